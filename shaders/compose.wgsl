@@ -1,0 +1,71 @@
+// Photo, overlay and outlines into one picture. All colours are sRGB-encoded and blended as such, like the interface's.
+
+@group(1) @binding(0) var photo_texture: texture_2d<f32>;
+@group(1) @binding(1) var photo_sampler: sampler;
+@group(1) @binding(2) var overlay_texture: texture_2d<f32>;
+@group(1) @binding(3) var id_texture: texture_2d<f32>;
+@group(1) @binding(4) var ghost_texture: texture_2d<f32>;
+
+@vertex
+fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    // One triangle that covers the target.
+    let corner = vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u));
+    return vec4<f32>(corner * 2.0 - 1.0, 0.0, 1.0);
+}
+
+fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
+    let pixel = frame.image_rect.xy + target_position / frame.target_rect.zw * frame.image_rect.zw;
+    // Pixel (0, 0) has its centre at 0, so the photo begins half a pixel before it.
+    let uv = (pixel + 0.5) / frame.photo.xy;
+    let color = textureSampleLevel(photo_texture, photo_sampler, uv, frame.photo.z).rgb;
+    let inside = all(uv >= vec2<f32>(0.0)) && all(uv < vec2<f32>(1.0)) && frame.photo.w > 0.5;
+    return select(frame.background.rgb, color, inside);
+}
+
+// The line along the border between two ids, centred on it: colour and coverage.
+fn outline_at(ids: texture_2d<f32>, texel: vec2<i32>) -> vec4<f32> {
+    let last = vec2<i32>(textureDimensions(ids)) - 1;
+    let here = textureLoad(ids, texel, 0);
+    let reach = i32(ceil(frame.outline.y));
+    var best = vec4<f32>(0.0);
+    for (var y = -reach; y <= reach; y++) {
+        for (var x = -reach; x <= reach; x++) {
+            let there = textureLoad(ids, clamp(texel + vec2<i32>(x, y), vec2<i32>(0), last), 0);
+            if (abs(there.a - here.a) > 0.001) {
+                // The selected object's line goes over the others', an object's over the background's.
+                let winner = select(there, here, here.a > there.a);
+                let half_width = select(frame.outline.x, frame.outline.y, winner.a > 0.5);
+                // The border is half a pixel before the first pixel that differs.
+                let distance = length(vec2<f32>(f32(x), f32(y))) - 0.5;
+                let coverage = clamp(half_width + 0.5 - distance, 0.0, 1.0);
+                if (coverage > best.a) {
+                    best = vec4<f32>(winner.rgb, coverage);
+                }
+            }
+        }
+    }
+    return best;
+}
+
+@fragment
+fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let target_position = position.xy - frame.target_rect.xy;
+    let last = vec2<i32>(textureDimensions(overlay_texture)) - 1;
+    let texel = clamp(vec2<i32>(floor(target_position)), vec2<i32>(0), last);
+
+    var color = photo_color(target_position);
+    let overlay = textureLoad(overlay_texture, texel, 0) * frame.background.a;
+    color = color * (1.0 - overlay.a) + overlay.rgb;
+
+    if (frame.outline.x > 0.0) {
+        let line = outline_at(id_texture, texel);
+        color = mix(color, line.rgb, line.a);
+    }
+    if (frame.outline.z > 0.0) {
+        // References are dashed: told apart by more than colour.
+        let dash = fract((target_position.x + target_position.y) / (2.0 * frame.outline.z));
+        let ghost = outline_at(ghost_texture, texel);
+        color = mix(color, ghost.rgb, ghost.a * select(0.0, 1.0, dash < 0.6));
+    }
+    return vec4<f32>(color, 1.0);
+}

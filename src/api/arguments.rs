@@ -1,0 +1,81 @@
+//! Arguments from JavaScript; what does not fit is an `Error` that says which and what was expected.
+
+use js_sys::{Array, Reflect, Uint8Array};
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
+
+use super::CallResult;
+use crate::platform::{FileBytes, PageCall, PageValue};
+
+pub fn number(args: &Array, index: u32, name: &str) -> Result<f64, JsValue> {
+    let value = args.get(index);
+    value.as_f64().ok_or_else(|| error(&format!("{name} is {value:?}, a number expected")))
+}
+
+pub fn set_pose(args: &Array) -> CallResult {
+    let rows: Vec<Vec<f64>> = Array::from(&args.get(2))
+        .iter()
+        .map(|row| Array::from(&row).iter().filter_map(|value| value.as_f64()).collect())
+        .collect();
+    let rows: Vec<[f64; 4]> = rows.into_iter().filter_map(|row| row.try_into().ok()).collect();
+    let camera_from_object: [[f64; 4]; 4] =
+        rows.try_into().map_err(|_| error("the matrix is not four rows of four numbers"))?;
+    Ok(PageCall::SetPose {
+        photo: number(args, 0, "photo")? as u32,
+        object: number(args, 1, "object")? as u32,
+        camera_from_object,
+    })
+}
+
+pub fn command(args: &Array) -> CallResult {
+    let name = args.get(0).as_string().ok_or_else(|| error("the command's name is not a text"))?;
+    let value = args.get(1);
+    let value = value.as_f64().map(PageValue::Number).or_else(|| value.as_bool().map(PageValue::Boolean));
+    Ok(PageCall::Command { name, value })
+}
+
+pub fn render(args: &Array) -> CallResult {
+    let options = args.get(0);
+    let id = |name: &str| field(&options, name).as_f64().map(|id| id as u32);
+    let kind = field(&options, "kind").as_string().ok_or_else(|| error("kind is missing"))?;
+    Ok(PageCall::Render { photo: id("photo"), kind, object: id("object") })
+}
+
+/// `load(files, {posesAs})`: files are `File`s or `{name, bytes}`, one or several.
+pub async fn load(args: &Array) -> CallResult {
+    let given = args.get(0);
+    let list = if js_sys::Object::is(&given, &JsValue::UNDEFINED) {
+        return Err(error("files expected"));
+    } else if given.has_type::<web_sys::File>() || field(&given, "bytes").is_truthy() {
+        Array::of1(&given)
+    } else {
+        Array::from(&given)
+    };
+    let mut files = Vec::new();
+    for item in list.iter() {
+        files.push(file(&item).await?);
+    }
+    Ok(PageCall::Load { files, poses_as: field(&args.get(1), "posesAs").as_string() })
+}
+
+async fn file(item: &JsValue) -> Result<FileBytes, JsValue> {
+    if let Some(file) = item.dyn_ref::<web_sys::File>() {
+        let buffer = JsFuture::from(file.array_buffer()).await?;
+        return Ok(FileBytes { name: file.name(), bytes: Uint8Array::new(&buffer).to_vec() });
+    }
+    let name = field(item, "name").as_string();
+    let bytes = field(item, "bytes");
+    match name {
+        Some(name) if bytes.is_object() => Ok(FileBytes { name, bytes: Uint8Array::new(&bytes).to_vec() }),
+        _ => Err(error("a File or {name, bytes} expected")),
+    }
+}
+
+/// A property, or `undefined`.
+fn field(object: &JsValue, name: &str) -> JsValue {
+    Reflect::get(object, &name.into()).unwrap_or(JsValue::UNDEFINED)
+}
+
+fn error(message: &str) -> JsValue {
+    js_sys::Error::new(message).into()
+}

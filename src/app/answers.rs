@@ -1,0 +1,284 @@
+//! Answers to the calls of the page's script.
+
+use std::sync::PoisonError;
+
+use glam::DVec2;
+
+use super::PinPose;
+use super::loading::Arrival;
+use super::widgets::WidgetWatcher;
+use crate::formats::{Keep, PosesAs, write_document};
+use crate::interact::pick_all;
+use crate::math::Pose;
+use crate::photo::png_rgba;
+use crate::platform::{self, FileBytes, PageAnswer, PageCall, PageReply, PageState, PageValue, Perf, Picked};
+use crate::render::{ExportKind, Layer, PixelsPending, export_picture, raster_png, silhouette_png};
+use crate::scene::{ObjectId, PhotoId, PoseSource};
+use crate::session::{COMMANDS, Command, Question, Tool};
+use crate::ui::Saving;
+
+type Answer = Result<PageAnswer, String>;
+
+/// Calls whose answers take more than this frame.
+#[derive(Default)]
+pub struct Answers {
+    widgets: Vec<PageReply>,
+    pictures: Vec<(PixelsPending, ExportKind, PageReply)>,
+    /// Waiting for a photo to be decoded.
+    renders: Vec<(PhotoId, ExportKind, Option<ObjectId>, PageReply)>,
+}
+
+impl PinPose {
+    pub(super) fn answer_calls(&mut self, ctx: &egui::Context) {
+        self.answer_widgets(ctx);
+        while let Some((call, reply)) = self.calls.take() {
+            match call {
+                PageCall::Load { files, poses_as } => self.call_load(files, poses_as, reply),
+                PageCall::Render { photo, kind, object } => self.call_render(photo, &kind, object, reply),
+                PageCall::Widgets => {
+                    ctx.enable_accesskit();
+                    self.answers.widgets.push(reply);
+                    ctx.request_repaint();
+                }
+                call => {
+                    // Who asked may be gone.
+                    reply.send(self.answer_now(call, ctx)).ok();
+                    // What was changed or looked up is on screen before anything else happens.
+                    ctx.request_repaint();
+                }
+            }
+        }
+        self.start_renders(ctx);
+        self.finish_pictures(ctx);
+    }
+
+    fn answer_now(&mut self, call: PageCall, ctx: &egui::Context) -> Answer {
+        match call {
+            PageCall::Ready => Ok(PageAnswer::Nothing),
+            PageCall::State => Ok(PageAnswer::State(self.page_state())),
+            PageCall::SetPose { photo, object, camera_from_object } => self.call_set_pose(photo, object, &camera_from_object),
+            PageCall::Command { name, value } => self.call_command(&name, value),
+            PageCall::PageFromImage { u, v } => self.page_from_image(DVec2::new(u, v)),
+            PageCall::ImageFromPage { x, y } => {
+                let pixel = self.image_from_page(x, y)?;
+                Ok(PageAnswer::Point { x: pixel.x, y: pixel.y })
+            }
+            PageCall::Pick { x, y } => self.call_pick(x, y),
+            PageCall::Perf => Ok(PageAnswer::Perf(self.perf())),
+            PageCall::Load { .. } | PageCall::Render { .. } | PageCall::Widgets => {
+                debug_assert!(false, "answered elsewhere");
+                ctx.request_repaint();
+                Ok(PageAnswer::Nothing)
+            }
+        }
+    }
+
+    fn call_load(&mut self, files: Vec<FileBytes>, poses_as: Option<String>, reply: PageReply) {
+        let poses_as = match poses_as.as_deref() {
+            None => None,
+            Some("annotations") => Some(PosesAs::Annotations),
+            Some("reference") => Some(PosesAs::Reference),
+            Some(other) => {
+                let message = format!("posesAs is \"{other}\", \"annotations\" or \"reference\" expected");
+                reply.send(Err(message)).ok();
+                return;
+            }
+        };
+        let files = files.into_iter().map(Ok).collect();
+        self.loading.arrive(Arrival { files, poses_as, reply: Some(reply) });
+    }
+
+    fn call_set_pose(&mut self, photo: u32, object: u32, rows: &[[f64; 4]; 4]) -> Answer {
+        let (camera_from_object, _) = Pose::from_rows(rows).map_err(|error| error.to_string())?;
+        let (photo, object) = (PhotoId(photo), ObjectId(object));
+        self.try_apply(Command::SetPose { photo, object, camera_from_object, source: PoseSource::Manual })?;
+        Ok(PageAnswer::Nothing)
+    }
+
+    fn call_command(&mut self, name: &str, value: Option<PageValue>) -> Answer {
+        let command = match (name, value) {
+            ("show_photo", Some(PageValue::Number(id))) => Command::ShowPhoto(PhotoId(id as u32)),
+            ("select", Some(PageValue::Number(id))) => Command::Select(Some(ObjectId(id as u32))),
+            ("select", None) => Command::Select(None),
+            ("set_overlay_opacity", Some(PageValue::Number(opacity))) => Command::SetOverlayOpacity(opacity as f32),
+            _ => {
+                let info = COMMANDS.iter().find(|info| info.name == name);
+                Command::Run(info.ok_or_else(|| format!("there is no command \"{name}\" with this argument"))?.id)
+            }
+        };
+        self.try_apply(command)?;
+        Ok(PageAnswer::Nothing)
+    }
+
+    /// A viewport pixel's place on the page, in CSS pixels. The zoom factor of the interface itself is part of both.
+    fn page_from_image(&self, pixel: DVec2) -> Answer {
+        let place = self.ui_state.viewport.ok_or("no photo is shown")?;
+        let position = self.view.viewport_from_image(pixel) / f64::from(place.pixels_per_point);
+        Ok(PageAnswer::Point {
+            x: position.x + f64::from(place.rect.left()),
+            y: position.y + f64::from(place.rect.top()),
+        })
+    }
+
+    fn image_from_page(&self, x: f64, y: f64) -> Result<DVec2, String> {
+        let place = self.ui_state.viewport.ok_or("no photo is shown")?;
+        let offset = DVec2::new(x - f64::from(place.rect.left()), y - f64::from(place.rect.top()));
+        Ok(self.view.image_from_viewport(offset * f64::from(place.pixels_per_point)))
+    }
+
+    fn call_pick(&self, x: f64, y: f64) -> Answer {
+        let pixel = self.image_from_page(x, y)?;
+        let photo = self.session.photo().ok_or("no photo is shown")?;
+        let hit = pick_all(self.session.scene(), photo.id, pixel).first().copied();
+        Ok(PageAnswer::Picked(hit.map(|hit| Picked {
+            object: hit.object.0,
+            face: hit.face,
+            point_object_mm: hit.point_object_mm.to_array(),
+            depth_mm: hit.point_camera_mm.z,
+        })))
+    }
+
+    fn page_state(&self) -> PageState {
+        let viewport = self.ui_state.viewport.map_or([0.0; 4], |place| {
+            [place.rect.left(), place.rect.top(), place.rect.width(), place.rect.height()].map(f64::from)
+        });
+        let question = self.session.question().map(|question| match question {
+            Question::PosesAs(_) => "poses_as",
+            Question::CameraSize { .. } => "camera_size",
+        });
+        PageState {
+            document_json: write_document(&self.session.document(Keep::Everything)),
+            photo: self.session.photo().map(|photo| photo.id.0),
+            selected: self.session.selected().map(|id| id.0),
+            tool: if self.session.tool() == Tool::Move { "move" } else { "rotate" },
+            zoom: self.view.zoom,
+            center: self.view.center.to_array(),
+            viewport,
+            panels: !self.ui_state.panels_hidden,
+            busy: self.loading.busy_text().is_some(),
+            saved: self.autosave.state(&self.session) == Saving::Saved,
+            question,
+            notices: self.ui_state.toasts.texts().map(str::to_owned).collect(),
+        }
+    }
+
+    fn perf(&mut self) -> Perf {
+        let usage = self.renderer.as_ref().map_or((0, 0, 0), |renderer| {
+            let renderer = renderer.lock().unwrap_or_else(PoisonError::into_inner);
+            let usage = &renderer.usage;
+            let counts = (usage.uploaded_bytes.get(), usage.draw_calls.get(), usage.triangles.get());
+            usage.reset();
+            counts
+        });
+        Perf {
+            backend: self.backend.clone(),
+            frames: self.performance.frames,
+            cpu_median_ms: self.performance.cpu_ms_quantile(0.5),
+            cpu_p95_ms: self.performance.cpu_ms_quantile(0.95),
+            uploaded_bytes: usage.0,
+            draw_calls: usage.1,
+            triangles: usage.2,
+            wasm_bytes: platform::wasm_bytes(),
+            start_ms: self.performance.start_ms,
+        }
+    }
+
+    fn call_render(&mut self, photo: Option<u32>, kind: &str, object: Option<u32>, reply: PageReply) {
+        match self.check_render(photo, kind, object) {
+            Ok((photo, kind, object)) => self.answers.renders.push((photo, kind, object, reply)),
+            Err(message) => {
+                reply.send(Err(message)).ok();
+            }
+        }
+    }
+
+    fn check_render(
+        &self,
+        photo: Option<u32>,
+        kind_name: &str,
+        object: Option<u32>,
+    ) -> Result<(PhotoId, ExportKind, Option<ObjectId>), String> {
+        let kind = ExportKind::from_name(kind_name).ok_or_else(|| {
+            let names = ExportKind::ALL.map(|(_, name)| name).join(", ");
+            format!("kind is \"{kind_name}\", one of {names} expected")
+        })?;
+        let photo = photo.map(PhotoId).or(self.session.photo().map(|photo| photo.id)).ok_or("no photo is open")?;
+        self.session.scene().photo(photo).ok_or_else(|| format!("there is no photo with the id {}", photo.0))?;
+        let object = object.map(ObjectId).or(self.session.selected().filter(|_| kind.is_of_one_object()));
+        if kind.is_of_one_object() {
+            let object = object.ok_or("an object is needed")?;
+            self.session.scene().annotation(photo, object).ok_or("that object is not in that photo")?;
+        }
+        Ok((photo, kind, object))
+    }
+
+    /// Starts what can be started; an overlay waits until its photo is decoded.
+    fn start_renders(&mut self, ctx: &egui::Context) {
+        for (photo, kind, object, reply) in std::mem::take(&mut self.answers.renders) {
+            let scene = self.session.scene();
+            let pixels = scene.photo(photo).and_then(|photo| self.photos.get(photo.asset.sha256));
+            match kind {
+                ExportKind::Mask | ExportKind::VisibleMask | ExportKind::Depth => {
+                    let png = raster_png(scene, photo, kind, object);
+                    reply.send(png.map(PageAnswer::Bytes).ok_or_else(|| "the picture cannot be made".to_owned())).ok();
+                }
+                ExportKind::Overlay if pixels.is_none() => {
+                    if let Some(photo) = scene.photo(photo).map(|photo| photo.asset.clone())
+                        && self.photos.wanted != Some(photo.sha256)
+                    {
+                        self.photos.wanted = Some(photo.sha256);
+                        self.loading.decode(&photo);
+                    }
+                    self.answers.renders.push((photo, kind, object, reply));
+                }
+                ExportKind::Overlay | ExportKind::Silhouette => {
+                    let object = object.filter(|_| kind.is_of_one_object());
+                    let picture = export_picture(scene, photo, pixels, object);
+                    let (Some(picture), Some(renderer)) = (picture, &self.renderer) else {
+                        reply.send(Err("the picture cannot be drawn".to_owned())).ok();
+                        continue;
+                    };
+                    let layer = if kind == ExportKind::Silhouette { Layer::Ids } else { Layer::Picture };
+                    let size = [picture.camera.width, picture.camera.height];
+                    let mut renderer = renderer.lock().unwrap_or_else(PoisonError::into_inner);
+                    let pending = renderer.draw_and_read(&picture, size, layer);
+                    self.answers.pictures.push((pending, kind, reply));
+                    ctx.request_repaint();
+                }
+            }
+        }
+    }
+
+    fn finish_pictures(&mut self, ctx: &egui::Context) {
+        let Some(renderer) = &self.renderer else { return };
+        let gpu = renderer.lock().unwrap_or_else(PoisonError::into_inner).gpu().clone();
+        for (pending, kind, reply) in std::mem::take(&mut self.answers.pictures) {
+            let Some(pixels) = pending.poll(&gpu) else {
+                self.answers.pictures.push((pending, kind, reply));
+                ctx.request_repaint();
+                continue;
+            };
+            let png = pixels.map_err(|error| error.to_string()).and_then(|pixels| {
+                let png = if kind == ExportKind::Silhouette { silhouette_png(&pixels) } else { png_rgba(&pixels) };
+                png.map(PageAnswer::Bytes).ok_or_else(|| "the picture cannot be written as PNG".to_owned())
+            });
+            reply.send(png).ok();
+        }
+    }
+
+    fn answer_widgets(&mut self, ctx: &egui::Context) {
+        if self.answers.widgets.is_empty() {
+            return;
+        }
+        let taken = ctx.plugin::<WidgetWatcher>().lock().take();
+        match taken {
+            Some(widgets) => {
+                for reply in self.answers.widgets.drain(..) {
+                    reply.send(Ok(PageAnswer::Widgets(widgets.clone()))).ok();
+                }
+                ctx.disable_accesskit();
+            }
+            None => ctx.request_repaint(),
+        }
+    }
+}

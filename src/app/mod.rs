@@ -1,0 +1,178 @@
+//! The program: an `eframe::App` that reads gestures, applies commands, carries out their effects and draws.
+//!
+//! `logic()` takes what came in (files, replies, keys, gestures, calls of the page) and changes the session; `ui()` draws
+//! it and applies what the panels asked for.
+
+mod answers;
+mod autosave;
+mod effects;
+mod input;
+mod jobs;
+mod loading;
+mod performance;
+mod photo_cache;
+mod widgets;
+
+use std::rc::Rc;
+use std::sync::{Arc, Mutex};
+
+use crate::interact::{PhotoGestures, PhotoView};
+use crate::platform::{self, PageCalls, Storage};
+use crate::render::{Gpu, Renderer};
+use crate::session::{Command, Notice, Session};
+use crate::ui::{self, SharedRenderer, UiState};
+
+pub use jobs::run_job;
+
+/// The whole program.
+pub struct PinPose {
+    session: Session,
+    view: PhotoView,
+    gestures: PhotoGestures,
+    ui_state: UiState,
+    loading: loading::Loading,
+    photos: photo_cache::PhotoCache,
+    autosave: autosave::Autosave,
+    renderer: Option<SharedRenderer>,
+    backend: String,
+    calls: PageCalls,
+    answers: answers::Answers,
+    performance: performance::Performance,
+    /// Read at the start of each frame: where the pointer is over the viewport, in its physical pixels.
+    pointer: Option<glam::DVec2>,
+}
+
+/// What the program starts with.
+pub struct Start {
+    pub calls: PageCalls,
+    pub storage: Rc<dyn Storage>,
+    /// Bring back what was open when the program was last left.
+    pub restore: bool,
+    pub load_example: bool,
+}
+
+impl PinPose {
+    pub fn new(creation: &eframe::CreationContext<'_>, start: Start) -> Self {
+        let ctx = &creation.egui_ctx;
+        ui::apply_theme(ctx);
+        ctx.add_plugin(widgets::WidgetWatcher::default());
+        let gpu_state = creation.wgpu_render_state.as_ref();
+        let renderer = gpu_state.map(|state| {
+            let gpu = Gpu { device: state.device.clone(), queue: state.queue.clone() };
+            Arc::new(Mutex::new(Renderer::new(gpu, state.target_format)))
+        });
+        if let Some(state) = gpu_state {
+            watch_device(&state.device);
+        }
+        let backend = gpu_state.map(|state| backend_name(&state.adapter)).unwrap_or_default();
+        let mut app = Self {
+            session: Session::default(),
+            view: PhotoView::default(),
+            gestures: PhotoGestures::default(),
+            ui_state: UiState::default(),
+            loading: loading::Loading::new(ctx),
+            photos: photo_cache::PhotoCache::default(),
+            autosave: autosave::Autosave::new(start.storage, ctx.clone()),
+            renderer,
+            backend,
+            calls: start.calls,
+            answers: answers::Answers::default(),
+            performance: performance::Performance::default(),
+            pointer: None,
+        };
+        if start.restore {
+            app.autosave.restore();
+        }
+        if start.load_example {
+            app.loading.fetch_example();
+        }
+        app
+    }
+
+    /// Applies a command and does what it asks for; an error becomes a message.
+    fn apply(&mut self, command: Command) {
+        if let Err(error) = self.try_apply(command) {
+            self.notify(Notice::warning(error));
+        }
+    }
+
+    fn try_apply(&mut self, command: Command) -> Result<(), String> {
+        if matches!(command, Command::CancelGesture | Command::Run(crate::session::CommandId::Cancel)) {
+            self.gestures.cancel();
+        }
+        let effects = self.session.apply(command, platform::now_ms()).map_err(|error| error.to_string())?;
+        effects.into_iter().for_each(|effect| self.carry_out(effect));
+        Ok(())
+    }
+
+    fn notify(&mut self, notice: Notice) {
+        self.ui_state.toasts.add(notice);
+    }
+}
+
+impl eframe::App for PinPose {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        self.performance.begin_frame(frame.info().cpu_usage);
+        self.take_restored();
+        self.take_loaded(ctx);
+        self.take_dropped(ctx);
+        self.answer_calls(ctx);
+        self.take_keys(ctx);
+        self.take_gestures(ctx);
+        self.want_pixels();
+        self.autosave.tick(ctx, &self.session, platform::now_ms());
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
+        let cursor_pixel = self.pointer.map(|position| self.view.image_from_viewport(position));
+        let around = ui::Surroundings {
+            view: &self.view,
+            renderer: self.renderer.as_ref(),
+            pixels,
+            saving: self.autosave.state(&self.session),
+            busy: self.loading.busy_text(),
+            update_ready: platform::update_offer().is_some(),
+            files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
+            under_cursor: self.hit_under_cursor(cursor_pixel),
+            cursor_pixel,
+            dragging: self.gestures.is_dragging_object(),
+        };
+        if self.performance.start_ms == 0.0 {
+            self.performance.start_ms = platform::navigation_ms();
+        }
+        let asked = ui::draw(ui, &self.session, &around, &mut self.ui_state);
+        self.place_view();
+        if asked.apply_update {
+            platform::reload();
+        }
+        if !asked.commands.is_empty() {
+            asked.commands.into_iter().for_each(|command| self.apply(command));
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        [0.0, 0.0, 0.0, 1.0]
+    }
+}
+
+/// A lost device cannot be drawn with: that is said, and the saved work comes back with a reload.
+fn watch_device(device: &wgpu::Device) {
+    device.set_device_lost_callback(|reason, message| {
+        if reason != wgpu::DeviceLostReason::Destroyed {
+            platform::report_crash(&format!("The graphics device was lost: {message}"));
+        }
+    });
+    device.on_uncaptured_error(std::sync::Arc::new(|error| {
+        platform::report_crash(&format!("The graphics device reported an error: {error}"));
+    }));
+}
+
+fn backend_name(adapter: &wgpu::Adapter) -> String {
+    match adapter.get_info().backend {
+        wgpu::Backend::BrowserWebGpu => "webgpu".to_owned(),
+        wgpu::Backend::Gl => "webgl".to_owned(),
+        other => format!("{other:?}").to_lowercase(),
+    }
+}

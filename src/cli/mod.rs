@@ -1,0 +1,78 @@
+//! The command line: one file per verb. Exit code 0 done, 1 bad input (one line on stderr per problem), 2 bad usage.
+
+mod convert;
+mod inspect;
+mod open;
+mod render;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+PinPose, a 6D object pose annotator
+
+pinpose                              open the window
+pinpose inspect FILE… [--json]       say what files are and what is in them
+pinpose convert IN… OUT              read files or folders, write poses (.json) or a workspace (.zip)
+pinpose render IN… --out FOLDER      draw each photo with its objects
+        [--kind overlay|silhouette|mask|visible_mask|depth] [--json]
+        one PNG per photo, for masks and silhouettes one per object
+pinpose --help | --version
+";
+
+/// What went wrong, by exit code.
+enum Failure {
+    /// One line per problem.
+    Input(Vec<String>),
+    Usage(String),
+}
+
+type Outcome = Result<(), Failure>;
+
+impl From<lexopt::Error> for Failure {
+    fn from(error: lexopt::Error) -> Self {
+        Self::Usage(error.to_string())
+    }
+}
+
+/// Runs the verb that the arguments name; `None` if there is none: a window is wanted.
+pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
+    let mut parser = lexopt::Parser::from_args(arguments);
+    let first = match parser.next() {
+        Ok(None) => return None,
+        Ok(Some(argument)) => argument,
+        Err(error) => return Some(report(Err(error.into()))),
+    };
+    let outcome = match first {
+        lexopt::Arg::Long("help") | lexopt::Arg::Short('h') => {
+            print!("{USAGE}");
+            Ok(())
+        }
+        lexopt::Arg::Long("version") => {
+            println!("PinPose {}", env!("CARGO_PKG_VERSION"));
+            Ok(())
+        }
+        lexopt::Arg::Value(verb) => match verb.to_str() {
+            Some("inspect") => inspect::run(parser),
+            Some("convert") => convert::run(parser),
+            Some("render") => render::run(parser),
+            _ => Err(Failure::Usage(format!("there is no verb \"{}\"", verb.to_string_lossy()))),
+        },
+        other => Err(other.unexpected().into()),
+    };
+    Some(report(outcome))
+}
+
+fn report(outcome: Outcome) -> ExitCode {
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Input(problems)) => {
+            problems.iter().for_each(|problem| eprintln!("pinpose: {problem}"));
+            ExitCode::from(1)
+        }
+        Err(Failure::Usage(message)) => {
+            eprint!("pinpose: {message}\n\n{USAGE}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Between the live scene and the document, both ways.
+
+use glam::DMat4;
+
+use super::{
+    CameraOriginEntry, Conventions, Document, ObjectEntry, PhotoEntry, PoseEntry, ReferenceEntry, ReferencePoseEntry,
+    SourceEntry, StateEntry, VERSION, ViewSettings,
+};
+use crate::formats::incoming::{IncomingReference, Look};
+use crate::formats::{FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose};
+use crate::math::{Distortion, Intrinsics, Pose};
+use crate::scene::{Annotation, AnnotationState, CameraOrigin, Object, Photo, PoseSource, Rgb, Scene, Sha256};
+
+/// Which poses a document holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// All: a saved state.
+    Everything,
+    /// Only those that somebody stands for: an untouched or carried pose is no annotation.
+    Annotated,
+}
+
+impl Document {
+    pub fn from_scene(scene: &Scene, view: &ViewSettings, keep: Keep) -> Self {
+        Self {
+            format: "pinpose".to_owned(),
+            version: VERSION,
+            generator: concat!("PinPose ", env!("CARGO_PKG_VERSION")).to_owned(),
+            conventions: Conventions {
+                pose: "camera_from_object: X_camera = R X_object + t".to_owned(),
+                camera_axes: "OpenCV: x right, y down, z forward".to_owned(),
+                length_unit: "mm".to_owned(),
+                matrix_order: "row-major".to_owned(),
+                pixel_origin: "(0, 0) is the centre of the top-left pixel".to_owned(),
+                time: "milliseconds since 1970-01-01T00:00:00Z".to_owned(),
+            },
+            name: scene.name.clone(),
+            photos: scene.photos.iter().map(|photo| photo_entry(scene, photo, keep)).collect(),
+            objects: scene.objects.iter().map(object_entry).collect(),
+            references: scene.references.iter().map(reference_entry).collect(),
+            view: view.clone(),
+        }
+    }
+
+    /// The content of each photo, in order; `None` where the document's hash is not one.
+    pub fn photo_hashes(&self) -> impl Iterator<Item = Option<Sha256>> {
+        self.photos.iter().map(|photo| photo.sha256.parse().ok())
+    }
+
+    /// The content of each object's mesh, in order; the same mesh may come several times.
+    pub fn mesh_hashes(&self) -> impl Iterator<Item = Option<Sha256>> {
+        self.objects.iter().map(|object| object.mesh_sha256.parse().ok())
+    }
+
+    pub fn pose_count(&self) -> usize {
+        self.photos.iter().map(|photo| photo.poses.len()).sum()
+    }
+
+    /// The position of the view's photo and object among the document's.
+    pub fn view_positions(&self) -> (Option<usize>, Option<usize>) {
+        let photo = self.photos.iter().position(|photo| Some(photo.id) == self.view.photo);
+        let object = self.objects.iter().position(|object| Some(object.id) == self.view.selected);
+        (photo, object)
+    }
+
+    pub(in crate::formats) fn to_incoming(&self, file_name: &str) -> Result<Incoming, FormatError> {
+        let mut incoming = Incoming::new(file_name);
+        for (index, object) in self.objects.iter().enumerate() {
+            incoming.objects.push(object.to_incoming(&format!("objects[{index}]"))?);
+        }
+        for (index, photo) in self.photos.iter().enumerate() {
+            incoming.photos.push(self.incoming_photo(photo, &format!("photos[{index}]"))?);
+        }
+        for (index, reference) in self.references.iter().enumerate() {
+            incoming.references.push(self.incoming_reference(reference, &format!("references[{index}]"))?);
+        }
+        Ok(incoming)
+    }
+
+    fn incoming_photo(&self, photo: &PhotoEntry, place: &str) -> Result<IncomingPhoto, FormatError> {
+        let mut camera = Intrinsics::from_k_rows(&photo.k, photo.width, photo.height)
+            .map_err(|error| FormatError::camera(format!("{place}.K"), error))?;
+        camera.distortion = photo.distortion.map_or(Distortion::NONE, Distortion::from_array);
+        let camera = camera.checked().map_err(|error| FormatError::camera(format!("{place}.distortion"), error))?;
+        let poses = photo.poses.iter().enumerate();
+        Ok(IncomingPhoto {
+            key: content_key(&photo.sha256, &photo.file, place)?,
+            camera: Some(IncomingCamera::Exact(camera, photo.camera_origin.clone().into())),
+            poses: poses
+                .map(|(index, pose)| self.incoming_pose(pose, &format!("{place}.poses[{index}]")))
+                .collect::<Result<_, _>>()?,
+        })
+    }
+
+    fn incoming_pose(&self, pose: &PoseEntry, place: &str) -> Result<IncomingPose, FormatError> {
+        let camera_from_object = read_pose(&pose.camera_from_object, place)?;
+        let [x, y, z, _] = pose.camera_from_object;
+        let rotation = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
+        if rotation != pose.rotation || [x[3], y[3], z[3]] != pose.translation_mm {
+            return Err(FormatError::at(place, "R and t are not those of camera_from_object; which one is right?"));
+        }
+        Ok(IncomingPose {
+            object: self.object_index(pose.object, place)?,
+            camera_from_object,
+            state: pose.state.into(),
+            source: pose.source.into(),
+            changed_at_ms: Some(pose.changed_at_ms),
+        })
+    }
+
+    fn incoming_reference(&self, reference: &ReferenceEntry, place: &str) -> Result<IncomingReference, FormatError> {
+        let poses = reference.poses.iter().map(|pose| {
+            let photo = self.photos.iter().position(|photo| photo.id == pose.photo);
+            let photo = photo.ok_or_else(|| FormatError::at(place, format!("no photo has the id {}", pose.photo)))?;
+            let object = self.object_index(pose.object, place)?;
+            Ok((photo, object, read_pose(&pose.camera_from_object, place)?))
+        });
+        Ok(IncomingReference {
+            name: reference.name.clone(),
+            visible: reference.visible,
+            poses: poses.collect::<Result<_, FormatError>>()?,
+        })
+    }
+
+    fn object_index(&self, id: u32, place: &str) -> Result<usize, FormatError> {
+        let index = self.objects.iter().position(|object| object.id == id);
+        index.ok_or_else(|| FormatError::at(place, format!("no object has the id {id}")))
+    }
+}
+
+fn photo_entry(scene: &Scene, photo: &Photo, keep: Keep) -> PhotoEntry {
+    let kept = |annotation: &Annotation| {
+        keep == Keep::Everything
+            || matches!(annotation.state, AnnotationState::Posed | AnnotationState::Confirmed)
+    };
+    PhotoEntry {
+        id: photo.id.0,
+        file: photo.asset.file_name.clone(),
+        sha256: photo.asset.sha256.to_string(),
+        width: photo.camera.width,
+        height: photo.camera.height,
+        k: photo.camera.k_rows(),
+        distortion: (!photo.camera.distortion.is_none()).then(|| photo.camera.distortion.to_array()),
+        camera_origin: photo.camera_origin.clone().into(),
+        poses: scene
+            .objects_in(photo.id)
+            .filter(|(_, annotation)| kept(annotation))
+            .map(|(object, annotation)| pose_entry(object, annotation))
+            .collect(),
+    }
+}
+
+fn pose_entry(object: &Object, annotation: &Annotation) -> PoseEntry {
+    let pose = &annotation.camera_from_object;
+    PoseEntry {
+        object: object.id.0,
+        name: object.name.clone(),
+        mesh_file: object.mesh.file_name.clone(),
+        mesh_sha256: object.mesh.sha256.to_string(),
+        rotation: pose.rotation_rows(),
+        translation_mm: pose.translation_mm.to_array(),
+        camera_from_object: pose.to_rows(),
+        state: annotation.state.into(),
+        source: annotation.source.into(),
+        changed_at_ms: annotation.changed_at_ms,
+        camera_changed: annotation.camera_changed,
+    }
+}
+
+fn object_entry(object: &Object) -> ObjectEntry {
+    let Rgb([red, green, blue]) = object.color;
+    ObjectEntry {
+        id: object.id.0,
+        name: object.name.clone(),
+        mesh_file: object.mesh.file_name.clone(),
+        mesh_sha256: object.mesh.sha256.to_string(),
+        mesh_from_file: object.mesh_from_file.transpose().to_cols_array_2d(),
+        color: format!("#{red:02x}{green:02x}{blue:02x}"),
+        opacity: object.opacity,
+        visible: object.visible,
+        locked: object.locked,
+    }
+}
+
+fn reference_entry(reference: &crate::scene::Reference) -> ReferenceEntry {
+    let poses = reference.poses.iter().map(|((photo, object), pose)| ReferencePoseEntry {
+        photo: photo.0,
+        object: object.0,
+        camera_from_object: pose.to_rows(),
+    });
+    ReferenceEntry { name: reference.name.clone(), visible: reference.visible, poses: poses.collect() }
+}
+
+impl ObjectEntry {
+    fn to_incoming(&self, place: &str) -> Result<IncomingObject, FormatError> {
+        let mesh_from_file = DMat4::from_cols_array_2d(&self.mesh_from_file).transpose();
+        let determinant = mesh_from_file.determinant();
+        if !mesh_from_file.is_finite() || determinant.abs() < 1e-30 || mesh_from_file.row(3) != glam::DVec4::W {
+            return Err(FormatError::at(format!("{place}.mesh_from_file"), "an invertible affine 4×4 expected"));
+        }
+        Ok(IncomingObject {
+            key: content_key(&self.mesh_sha256, &self.mesh_file, place)?,
+            mesh_from_file,
+            look: Some(Look {
+                name: self.name.clone(),
+                color: read_color(&self.color, place)?,
+                opacity: self.opacity.clamp(0.0, 1.0),
+                visible: self.visible,
+                locked: self.locked,
+            }),
+        })
+    }
+}
+
+fn read_pose(rows: &[[f64; 4]; 4], place: &str) -> Result<Pose, FormatError> {
+    let pose = Pose::from_rows(rows).map_err(|error| FormatError::pose(format!("{place}.camera_from_object"), error))?;
+    Ok(pose.0)
+}
+
+fn content_key(sha256: &str, file_name: &str, place: &str) -> Result<FileKey, FormatError> {
+    let sha256: Sha256 = sha256.parse().map_err(|reason| FormatError::at(format!("{place}.sha256"), reason))?;
+    Ok(FileKey::Content { sha256, file_name: file_name.to_owned() })
+}
+
+fn read_color(text: &str, place: &str) -> Result<Rgb, FormatError> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
+    let value = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    let [_, red, green, blue] = value
+        .ok_or_else(|| FormatError::at(format!("{place}.color"), format!("#rrggbb expected, found \"{text}\"")))?
+        .to_be_bytes();
+    Ok(Rgb([red, green, blue]))
+}
+
+impl From<CameraOrigin> for CameraOriginEntry {
+    fn from(origin: CameraOrigin) -> Self {
+        match origin {
+            CameraOrigin::AssumedFieldOfView => Self::AssumedFieldOfView,
+            CameraOrigin::Exif => Self::Exif,
+            CameraOrigin::Typed => Self::Typed,
+            CameraOrigin::File(name) => Self::File { name },
+        }
+    }
+}
+
+impl From<CameraOriginEntry> for CameraOrigin {
+    fn from(entry: CameraOriginEntry) -> Self {
+        match entry {
+            CameraOriginEntry::AssumedFieldOfView => Self::AssumedFieldOfView,
+            CameraOriginEntry::Exif => Self::Exif,
+            CameraOriginEntry::Typed => Self::Typed,
+            CameraOriginEntry::File { name } => Self::File(name),
+        }
+    }
+}
+
+/// Both directions between two enums of the same variants.
+macro_rules! mirror {
+    ($live:ident, $entry:ident, $($variant:ident),+) => {
+        impl From<$live> for $entry {
+            fn from(live: $live) -> Self {
+                match live { $($live::$variant => Self::$variant),+ }
+            }
+        }
+        impl From<$entry> for $live {
+            fn from(entry: $entry) -> Self {
+                match entry { $($entry::$variant => Self::$variant),+ }
+            }
+        }
+    };
+}
+
+mirror!(AnnotationState, StateEntry, Untouched, Carried, Posed, Confirmed);
+mirror!(PoseSource, SourceEntry, Manual, Pins, Snap, Tracked, Imported);

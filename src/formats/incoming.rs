@@ -1,0 +1,117 @@
+//! Poses and cameras on their way into a scene, with the files they speak of named but not yet found.
+
+use glam::DMat4;
+
+use super::{CameraFile, Document, FileKey, FormatError};
+use crate::math::{Intrinsics, Pose};
+use crate::scene::{AnnotationState, CameraOrigin, PoseSource, Rgb};
+
+/// What an import's poses are to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PosesAs {
+    /// The user's own: start poses to go on from, or a saved state to return to.
+    Annotations,
+    /// A read-only set beside them.
+    Reference,
+}
+
+/// Everything a file of poses says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Incoming {
+    pub file_name: String,
+    pub photos: Vec<IncomingPhoto>,
+    pub objects: Vec<IncomingObject>,
+    pub references: Vec<IncomingReference>,
+    /// A camera for photos that are still to come.
+    pub cameras_to_come: Option<CameraFile>,
+    /// What was corrected while reading.
+    pub remarks: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct IncomingPhoto {
+    pub key: FileKey,
+    pub camera: Option<IncomingCamera>,
+    pub poses: Vec<IncomingPose>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum IncomingCamera {
+    /// A foreign camera, which may be of another size than the photo.
+    File(CameraFile),
+    /// Our own, which says where it came from.
+    Exact(Intrinsics, CameraOrigin),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct IncomingObject {
+    pub key: FileKey,
+    pub mesh_from_file: DMat4,
+    pub look: Option<Look>,
+}
+
+/// How an object was shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Look {
+    pub name: String,
+    pub color: Rgb,
+    pub opacity: f32,
+    pub visible: bool,
+    pub locked: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct IncomingPose {
+    /// Index into [`Incoming::objects`].
+    pub object: usize,
+    pub camera_from_object: Pose,
+    pub state: AnnotationState,
+    pub source: PoseSource,
+    /// `None`: now.
+    pub changed_at_ms: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct IncomingReference {
+    pub name: String,
+    pub visible: bool,
+    /// Indices into [`Incoming::photos`] and [`Incoming::objects`].
+    pub poses: Vec<(usize, usize, Pose)>,
+}
+
+impl IncomingObject {
+    pub fn named(key: FileKey) -> Self {
+        Self { key, mesh_from_file: DMat4::IDENTITY, look: None }
+    }
+}
+
+impl Incoming {
+    pub fn new(file_name: &str) -> Self {
+        Self {
+            file_name: file_name.to_owned(),
+            photos: Vec::new(),
+            objects: Vec::new(),
+            references: Vec::new(),
+            cameras_to_come: None,
+            remarks: Vec::new(),
+        }
+    }
+
+    /// The index of the object with this stem, made where it is new.
+    pub fn object_with(&mut self, make: impl FnOnce() -> IncomingObject, stem: &str) -> usize {
+        let known = self.objects.iter().position(|object| object.key.stem() == stem);
+        known.unwrap_or_else(|| {
+            self.objects.push(make());
+            self.objects.len() - 1
+        })
+    }
+
+    pub fn pose_count(&self) -> usize {
+        self.photos.iter().map(|photo| photo.poses.len()).sum()
+    }
+
+    /// Takes over what one of our own documents says.
+    pub fn from_document(file_name: &str, document: &Document) -> Result<Self, FormatError> {
+        document.to_incoming(file_name)
+    }
+}

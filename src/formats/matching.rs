@@ -1,0 +1,213 @@
+//! Finding the photos and meshes that incoming poses speak of, and giving the poses to the scene.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::{Incoming, IncomingCamera, IncomingObject, PosesAs};
+use crate::math::Pose;
+use crate::scene::{
+    Annotation, CameraOrigin, MeshAsset, ObjectId, Photo, PhotoId, Reference, Scene, Sha256, file_stem,
+};
+
+/// How a file of poses names a photo or a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FileKey {
+    /// Our own files: the content decides, the name is for messages.
+    Content { sha256: Sha256, file_name: String },
+    /// Others': a file name without its extension.
+    Stem(String),
+}
+
+impl FileKey {
+    pub fn stem(&self) -> &str {
+        match self {
+            Self::Content { file_name, .. } => file_stem(file_name),
+            Self::Stem(stem) => stem,
+        }
+    }
+
+    fn matches(&self, file_name: &str, sha256: Sha256) -> bool {
+        match self {
+            Self::Content { sha256: wanted, .. } => *wanted == sha256,
+            Self::Stem(stem) => file_stem(file_name) == stem,
+        }
+    }
+
+    fn display(&self) -> String {
+        match self {
+            Self::Content { file_name, .. } => file_name.clone(),
+            Self::Stem(stem) => stem.clone(),
+        }
+    }
+}
+
+/// What became of an import.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outcome {
+    /// How many poses found their photo and their mesh.
+    pub applied: usize,
+    /// Names of the files that are still needed.
+    pub missing: Vec<String>,
+    /// Photos that the import gave a camera of another size than theirs: the user decides.
+    pub differing_cameras: Vec<(PhotoId, super::CameraFile)>,
+    /// What could not be done.
+    pub problems: Vec<String>,
+}
+
+impl Incoming {
+    /// Gives cameras and poses to the scene as far as their files are in it.
+    pub fn apply(&self, scene: &mut Scene, poses_as: PosesAs, now_ms: f64) -> Outcome {
+        let mut outcome = Outcome::default();
+        let photos: Vec<Option<PhotoId>> =
+            self.photos.iter().map(|photo| find_photo(scene, &photo.key).map(|photo| photo.id)).collect();
+        let objects = self.find_objects(scene);
+        self.list_missing(&photos, &objects, &mut outcome);
+
+        for (photo, id) in self.photos.iter().zip(&photos) {
+            if let (Some(id), Some(camera)) = (id, &photo.camera) {
+                give_camera(scene, *id, camera, &mut outcome);
+            }
+        }
+        match poses_as {
+            PosesAs::Annotations => self.apply_annotations(scene, &photos, &objects, now_ms, &mut outcome),
+            PosesAs::Reference => self.apply_reference(scene, &photos, &objects, &mut outcome),
+        }
+        outcome
+    }
+
+    fn apply_annotations(
+        &self,
+        scene: &mut Scene,
+        photos: &[Option<PhotoId>],
+        objects: &[Option<ObjectId>],
+        now_ms: f64,
+        outcome: &mut Outcome,
+    ) {
+        for (incoming, object) in self.objects.iter().zip(objects) {
+            if let Some(object) = object {
+                outcome.problems.extend(restore_look(scene, *object, incoming));
+            }
+        }
+        for (photo, id) in self.photos.iter().zip(photos) {
+            for pose in &photo.poses {
+                let (Some(photo), Some(&Some(object))) = (*id, objects.get(pose.object)) else { continue };
+                let annotation = Annotation {
+                    camera_from_object: pose.camera_from_object,
+                    state: pose.state,
+                    source: pose.source,
+                    changed_at_ms: pose.changed_at_ms.unwrap_or(now_ms),
+                    camera_changed: false,
+                };
+                scene.annotations.insert((photo, object), annotation);
+                outcome.applied += 1;
+            }
+        }
+        for reference in &self.references {
+            let poses = reference.poses.iter().filter_map(|&(photo, object, pose)| {
+                Some((((*photos.get(photo)?)?, (*objects.get(object)?)?), pose))
+            });
+            add_reference(scene, &reference.name, reference.visible, poses.collect());
+        }
+    }
+
+    fn apply_reference(
+        &self,
+        scene: &mut Scene,
+        photos: &[Option<PhotoId>],
+        objects: &[Option<ObjectId>],
+        outcome: &mut Outcome,
+    ) {
+        let mut poses = BTreeMap::new();
+        for (photo, id) in self.photos.iter().zip(photos) {
+            for pose in &photo.poses {
+                if let (Some(photo), Some(&Some(object))) = (*id, objects.get(pose.object)) {
+                    poses.insert((photo, object), pose.camera_from_object);
+                }
+            }
+        }
+        outcome.applied = poses.len();
+        add_reference(scene, file_stem(&self.file_name), true, poses);
+    }
+
+    /// The n-th incoming object of a mesh is the scene's n-th object of that mesh; where the scene has the mesh but too few
+    /// objects of it, more are made.
+    fn find_objects(&self, scene: &mut Scene) -> Vec<Option<ObjectId>> {
+        let mut taken: Vec<ObjectId> = Vec::new();
+        let mut find = |incoming: &IncomingObject| {
+            let matches = |mesh: &MeshAsset| incoming.key.matches(&mesh.file_name, mesh.sha256);
+            let free = scene.objects.iter().find(|object| matches(&object.mesh) && !taken.contains(&object.id));
+            let id = match free {
+                Some(object) => object.id,
+                None => {
+                    let mesh = scene.objects.iter().find(|object| matches(&object.mesh))?.mesh.clone();
+                    scene.add_object(mesh)
+                }
+            };
+            taken.push(id);
+            Some(id)
+        };
+        self.objects.iter().map(&mut find).collect()
+    }
+
+    fn list_missing(&self, photos: &[Option<PhotoId>], objects: &[Option<ObjectId>], outcome: &mut Outcome) {
+        let missing_photos = self.photos.iter().zip(photos).filter(|(_, id)| id.is_none()).map(|(photo, _)| &photo.key);
+        let missing_objects =
+            self.objects.iter().zip(objects).filter(|(_, id)| id.is_none()).map(|(object, _)| &object.key);
+        for key in missing_photos.chain(missing_objects) {
+            let name = key.display();
+            if !outcome.missing.contains(&name) {
+                outcome.missing.push(name);
+            }
+        }
+    }
+}
+
+fn find_photo<'a>(scene: &'a Scene, key: &FileKey) -> Option<&'a Photo> {
+    scene.photos.iter().find(|photo| key.matches(&photo.asset.file_name, photo.asset.sha256))
+}
+
+fn give_camera(scene: &mut Scene, id: PhotoId, camera: &IncomingCamera, outcome: &mut Outcome) {
+    let Some(photo) = scene.photo(id) else { return };
+    let (width, height) = (photo.asset.width, photo.asset.height);
+    match camera {
+        IncomingCamera::Exact(camera, origin) => scene.set_camera(id, *camera, origin.clone()),
+        IncomingCamera::File(file) if file.differs_in_size(width, height) => {
+            outcome.differing_cameras.push((id, file.clone()));
+        }
+        IncomingCamera::File(file) => {
+            scene.set_camera(id, file.intrinsics(width, height), CameraOrigin::File(file.file_name.clone()));
+        }
+    }
+}
+
+/// Gives an object its saved look; what cannot be done is said.
+fn restore_look(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> Option<String> {
+    let object = scene.object_mut(id)?;
+    if let Some(look) = &incoming.look {
+        object.name.clone_from(&look.name);
+        object.color = look.color;
+        object.opacity = look.opacity;
+        object.visible = look.visible;
+        object.locked = look.locked;
+    }
+    if object.mesh_from_file == incoming.mesh_from_file {
+        return None;
+    }
+    match object.mesh.with_mesh_from_file(object.mesh_from_file, incoming.mesh_from_file) {
+        Ok(mesh) => {
+            object.mesh = Arc::new(mesh);
+            object.mesh_from_file = incoming.mesh_from_file;
+            None
+        }
+        Err(error) => Some(format!("{}: mesh_from_file cannot be applied: {error}", object.name)),
+    }
+}
+
+/// A reference of the same name is replaced: the file was dropped again.
+fn add_reference(scene: &mut Scene, name: &str, visible: bool, poses: BTreeMap<(PhotoId, ObjectId), Pose>) {
+    if poses.is_empty() {
+        return;
+    }
+    scene.references.retain(|reference| reference.name != name);
+    scene.references.push(Reference { name: name.to_owned(), visible, poses });
+}

@@ -1,0 +1,16 @@
+//! Frames, rigid transforms, the camera and rays: the numbers everything above is made of.
+//!
+//! Spaces are in the names (`camera_from_object`), so that a product reads `a_from_b * b_from_c`. Lengths are
+//! millimetres, angles radians, pixels are in the `image` frame: (0, 0) is the *centre* of the top-left pixel.
+
+mod bounds;
+mod camera;
+mod frames;
+mod pose;
+mod ray;
+
+pub use bounds::{Bounds, BoundingSphere};
+pub use camera::{CameraError, Distortion, Intrinsics};
+pub use frames::{ImageRect, NEAR_MM, clip_from_camera};
+pub use pose::{Pose, PoseError, nearest_rotation, rotation_defect};
+pub use ray::Ray;

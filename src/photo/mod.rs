@@ -1,0 +1,26 @@
+//! Photographs: encoded bytes to upright 8-bit RGBA, with what the file says of its lens.
+
+mod decode;
+mod encode;
+mod mip;
+
+pub use decode::{MAX_PIXELS, PhotoError, decode};
+pub use encode::{png_gray8, png_gray16, png_rgba};
+pub use mip::half_size;
+
+/// A decoded photo: RGBA rows from the top, 8 bits a channel, sRGB, upright (EXIF orientation applied).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pixels {
+    pub width: u32,
+    pub height: u32,
+    /// `4 * width * height` bytes.
+    pub rgba: Vec<u8>,
+}
+
+/// What [`decode`] returns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecodedPhoto {
+    pub pixels: Pixels,
+    /// The focal length in pixels that the EXIF data gives by its 35 mm equivalent.
+    pub exif_focal_px: Option<f64>,
+}

@@ -1,0 +1,91 @@
+//! The desktop: dialogs, folders, threads.
+
+mod background;
+mod folder;
+
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use super::{EXAMPLE_PATH, FileBytes, Storage, UpdateOffer};
+
+pub use background::Background;
+
+/// Milliseconds since 1970, UTC.
+pub fn now_ms() -> f64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64() * 1000.0)
+}
+
+/// Runs a future to its end: on the desktop, files are there at once.
+pub fn spawn(future: impl Future<Output = ()> + 'static) {
+    pollster::block_on(future);
+}
+
+/// Asks for files and hands over those that can be read; each of the others is an error.
+pub fn pick_files(on_picked: impl FnOnce(Vec<Result<FileBytes, String>>) + 'static) {
+    if let Some(paths) = rfd::FileDialog::new().set_title("Open files").pick_files() {
+        on_picked(paths.iter().map(|path| read(path)).collect());
+    }
+}
+
+fn read(path: &Path) -> Result<FileBytes, String> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(FileBytes { name, bytes }),
+        Err(error) => Err(format!("{name}: {error}")),
+    }
+}
+
+/// Asks where to save a file, and saves it.
+pub fn download(file_name: &str, bytes: &[u8]) -> Result<(), String> {
+    match rfd::FileDialog::new().set_file_name(file_name).save_file() {
+        Some(path) => std::fs::write(&path, bytes).map_err(|error| format!("{file_name}: {error}")),
+        None => Ok(()),
+    }
+}
+
+/// The example scene, from the folder where the program was built.
+pub fn fetch_example(on_done: impl FnOnce(Result<FileBytes, String>) + 'static) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(EXAMPLE_PATH);
+    on_done(read(&path));
+}
+
+/// A page has parameters; a window has none.
+pub fn page_parameter(_name: &str) -> Option<String> {
+    None
+}
+
+/// A window has no wasm and no navigation.
+pub fn wasm_bytes() -> f64 {
+    0.0
+}
+
+pub fn navigation_ms() -> f64 {
+    0.0
+}
+
+/// What the page shows as its crash screen, a window can only write down.
+pub fn report_crash(message: &str) {
+    log::error!("{message}");
+}
+
+pub fn page_version() -> String {
+    env!("CARGO_PKG_VERSION").to_owned()
+}
+
+/// A window is not updated while it is open.
+pub fn update_offer() -> Option<UpdateOffer> {
+    None
+}
+
+pub fn reload() {}
+
+/// The folder where this user's programs keep their data.
+pub fn default_storage() -> Rc<dyn Storage> {
+    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/share"));
+    let data = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).or_else(home);
+    match data {
+        Some(data) => Rc::new(folder::FolderStorage::new(data.join("pinpose"))),
+        None => Rc::new(super::MemoryStorage::default()),
+    }
+}

@@ -1,0 +1,113 @@
+//! The browser tab: the page's script, files, downloads, the address.
+
+mod background;
+mod files;
+mod indexed_db;
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use wasm_bindgen::prelude::*;
+
+use super::{Storage, UpdateOffer};
+
+pub use background::Background;
+pub use files::{download, fetch_example, pick_files};
+
+/// What the boot script offers; see `web/page/boot.js`.
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(js_namespace = pinposePage, js_name = crashed)]
+    fn page_crashed(message: &str);
+    #[wasm_bindgen(js_namespace = pinposePage, js_name = applyUpdate)]
+    fn page_apply_update();
+    #[wasm_bindgen(js_namespace = pinposePage, js_name = createWorker, catch)]
+    fn page_create_worker() -> Result<web_sys::Worker, JsValue>;
+    #[wasm_bindgen(thread_local_v2, js_namespace = pinposePage, js_name = buildVersion)]
+    static BUILD_VERSION: JsValue;
+    #[wasm_bindgen(thread_local_v2, js_namespace = pinposePage, js_name = wasmBytes)]
+    static WASM_BYTES: JsValue;
+}
+
+thread_local! {
+    static UPDATE_READY: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Milliseconds since 1970, UTC.
+pub fn now_ms() -> f64 {
+    js_sys::Date::now()
+}
+
+/// Milliseconds since the navigation began.
+pub fn navigation_ms() -> f64 {
+    web_sys::window().and_then(|window| window.performance()).map_or(0.0, |performance| performance.now())
+}
+
+pub fn spawn(future: impl Future<Output = ()> + 'static) {
+    wasm_bindgen_futures::spawn_local(future);
+}
+
+/// The crash screen, with a way back to what is saved.
+pub fn report_crash(message: &str) {
+    page_crashed(message);
+}
+
+/// A panic ends in the crash screen. Call this after the interface has put up its own hook, which stops its event handlers.
+pub fn install_panic_hook() {
+    let previous = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        previous(info);
+        page_crashed(&info.to_string());
+    }));
+}
+
+/// A parameter of the page's address: `Some("")` for `?name` without a value.
+pub fn page_parameter(name: &str) -> Option<String> {
+    let search = web_sys::window()?.location().search().ok()?;
+    web_sys::UrlSearchParams::new_with_str(&search).ok()?.get(name)
+}
+
+pub fn page_version() -> String {
+    BUILD_VERSION.with(JsValue::as_string).unwrap_or_else(|| env!("CARGO_PKG_VERSION").to_owned())
+}
+
+/// The size of the program as it was compiled, in bytes.
+pub fn wasm_bytes() -> f64 {
+    WASM_BYTES.with(JsValue::as_f64).unwrap_or(0.0)
+}
+
+/// Is a newer page waiting? `wake` of [`watch_for_updates`] is called when that changes.
+pub fn update_offer() -> Option<UpdateOffer> {
+    UPDATE_READY.get().then_some(UpdateOffer)
+}
+
+/// Listens for the boot script's word that a newer page is ready.
+pub fn watch_for_updates(wake: impl Fn() + 'static) {
+    let noticed = Closure::<dyn Fn()>::new(move || {
+        UPDATE_READY.set(true);
+        wake();
+    });
+    if let Some(window) = web_sys::window() {
+        let listener = noticed.as_ref().unchecked_ref();
+        window.add_event_listener_with_callback("pinpose-update", listener).ok();
+    }
+    // It listens as long as the page lives.
+    noticed.forget();
+}
+
+/// Lets the newer page take over.
+pub fn reload() {
+    page_apply_update();
+}
+
+pub fn default_storage() -> Rc<dyn Storage> {
+    Rc::new(indexed_db::IndexedDb::default())
+}
+
+/// The words of an error from the browser.
+fn describe(error: &JsValue) -> String {
+    match error.dyn_ref::<js_sys::Error>() {
+        Some(error) => String::from(error.message()),
+        None => error.as_string().unwrap_or_else(|| format!("{error:?}")),
+    }
+}

@@ -1,0 +1,110 @@
+//! Files that came from outside, kept as they were and known by their content.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat4};
+use sha2::Digest;
+
+use super::CameraOrigin;
+use crate::math::Intrinsics;
+use crate::mesh::{Bvh, Mesh, MeshError};
+
+/// The field of view that is assumed where a photo says nothing of its lens.
+const ASSUMED_FIELD_OF_VIEW_RAD: f64 = std::f64::consts::FRAC_PI_3;
+
+/// The SHA-256 of a file's bytes: how photos and meshes are found again.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Sha256([u8; 32]);
+
+impl Sha256 {
+    pub fn of(bytes: &[u8]) -> Self {
+        Self(sha2::Sha256::digest(bytes).into())
+    }
+}
+
+impl fmt::Display for Sha256 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl fmt::Debug for Sha256 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl FromStr for Sha256 {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        const EXPECTED: &str = "a SHA-256 of 64 hexadecimal digits expected";
+        if text.len() != 64 || !text.is_ascii() {
+            return Err(EXPECTED);
+        }
+        let mut digest = [0; 32];
+        for (byte, pair) in digest.iter_mut().zip(text.as_bytes().chunks_exact(2)) {
+            let pair = std::str::from_utf8(pair).map_err(|_| EXPECTED)?;
+            *byte = u8::from_str_radix(pair, 16).map_err(|_| EXPECTED)?;
+        }
+        Ok(Self(digest))
+    }
+}
+
+/// A photo's file. Its pixels are decoded when it is looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhotoAsset {
+    pub file_name: String,
+    pub sha256: Sha256,
+    pub bytes: Arc<[u8]>,
+    /// In pixels, upright.
+    pub width: u32,
+    pub height: u32,
+    pub exif_focal_px: Option<f64>,
+}
+
+impl PhotoAsset {
+    /// The camera to start with, and why.
+    pub fn guessed_camera(&self) -> (Intrinsics, CameraOrigin) {
+        match self.exif_focal_px {
+            Some(focal_px) => (Intrinsics::from_focal(focal_px, self.width, self.height), CameraOrigin::Exif),
+            None => (
+                Intrinsics::from_horizontal_fov(ASSUMED_FIELD_OF_VIEW_RAD, self.width, self.height),
+                CameraOrigin::AssumedFieldOfView,
+            ),
+        }
+    }
+}
+
+/// A mesh's file, parsed, with what picking needs.
+#[derive(Debug)]
+pub struct MeshAsset {
+    pub file_name: String,
+    pub sha256: Sha256,
+    pub bytes: Arc<[u8]>,
+    pub mesh: Mesh,
+    pub bvh: Bvh,
+}
+
+impl MeshAsset {
+    /// The same file under another transform from its numbers to the `object` frame.
+    pub fn with_mesh_from_file(&self, present: DMat4, wanted: DMat4) -> Result<Self, MeshError> {
+        let mesh = self.mesh.transformed(&DAffine3::from_mat4(wanted * present.inverse()))?;
+        Ok(Self {
+            file_name: self.file_name.clone(),
+            sha256: self.sha256,
+            bytes: self.bytes.clone(),
+            bvh: Bvh::build(&mesh),
+            mesh,
+        })
+    }
+}
+
+impl PartialEq for MeshAsset {
+    /// The content decides: the mesh follows from the bytes.
+    fn eq(&self, other: &Self) -> bool {
+        self.sha256 == other.sha256 && self.file_name == other.file_name
+    }
+}

@@ -1,0 +1,27 @@
+//! Colours that keep one meaning everywhere.
+
+/// sRGB, 8 bits a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rgb(pub [u8; 3]);
+
+/// Objects' colours in the order they are given out. The first is the paper's lime; the rest are apart from one another, from
+/// the references' magenta, and for colour-blind eyes (after Okabe and Ito).
+const OBJECT_COLORS: [Rgb; 7] = [
+    Rgb([152, 230, 60]),
+    Rgb([86, 180, 233]),
+    Rgb([240, 164, 40]),
+    Rgb([0, 196, 150]),
+    Rgb([240, 228, 66]),
+    Rgb([120, 130, 255]),
+    Rgb([235, 110, 50]),
+];
+
+/// The colour of the object that is added as number `index`.
+pub fn object_color(index: usize) -> Rgb {
+    OBJECT_COLORS[index % OBJECT_COLORS.len()]
+}
+
+/// References are magenta, as in the paper.
+pub fn reference_color() -> Rgb {
+    Rgb([255, 64, 220])
+}

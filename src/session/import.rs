@@ -1,0 +1,294 @@
+//! Files of one drop into the scene, and whole scenes in place of it.
+
+use std::sync::Arc;
+
+use super::{Answer, CommandError, Effect, History, Look, Notice, Question, Session, Waiting};
+use crate::formats::{CameraFile, Document, Incoming, Outcome, PosesAs};
+use crate::scene::{CameraOrigin, MeshAsset, PhotoAsset, PhotoId, Scene};
+
+/// The files of one drop, read.
+#[derive(Debug, Clone, Default)]
+pub struct Batch {
+    pub photos: Vec<Arc<PhotoAsset>>,
+    pub meshes: Vec<Arc<MeshAsset>>,
+    pub cameras: Vec<CameraFile>,
+    pub poses: Vec<Incoming>,
+    /// `None`: the user is asked.
+    pub poses_as: Option<PosesAs>,
+}
+
+/// A saved scene with its files.
+#[derive(Debug, Clone)]
+pub struct Opening {
+    pub document: Document,
+    pub photos: Vec<Arc<PhotoAsset>>,
+    pub meshes: Vec<Arc<MeshAsset>>,
+    /// A scene that is opened in place of another can be undone; one that is restored at the start cannot.
+    pub restored: bool,
+}
+
+impl Session {
+    /// Adds what was dropped, as one undo step.
+    pub(super) fn import(&mut self, batch: Batch, now_ms: f64) -> Vec<Effect> {
+        self.finish_gesture();
+        let before = self.snapshot();
+        let new_photos: Vec<PhotoId> =
+            batch.photos.iter().map(|asset| self.scene.add_photo(asset.clone())).collect();
+        if let Some(first) = new_photos.first() {
+            self.photo = Some(*first);
+        }
+        self.add_meshes(&batch, now_ms);
+        for camera in batch.cameras {
+            self.take_camera(camera, &new_photos);
+        }
+
+        let mut effects = self.retry_waiting(now_ms);
+        for incoming in batch.poses {
+            match batch.poses_as {
+                _ if incoming.pose_count() == 0 && incoming.references.is_empty() => {
+                    effects.extend(self.take_poses(incoming, PosesAs::Annotations, now_ms));
+                }
+                Some(poses_as) => effects.extend(self.take_poses(incoming, poses_as, now_ms)),
+                None => self.questions.push(Question::PosesAs(incoming)),
+            }
+        }
+        self.keep_selection_valid();
+        if self.scene != before.scene {
+            self.history.push("Add files", before);
+            self.touched();
+        }
+        effects
+    }
+
+    /// Adds each new mesh as an object. It is placed in the photo that is shown, unless the same drop brings poses: they say
+    /// where it belongs.
+    fn add_meshes(&mut self, batch: &Batch, now_ms: f64) {
+        for mesh in &batch.meshes {
+            let known = self.scene.objects.iter().find(|object| object.mesh.sha256 == mesh.sha256);
+            let id = known.map(|object| object.id).unwrap_or_else(|| self.scene.add_object(mesh.clone()));
+            self.selected = Some(id);
+        }
+        let waits_for_poses = !batch.poses.is_empty() || self.waiting.iter().any(|w| w.incoming.pose_count() > 0);
+        if waits_for_poses {
+            return;
+        }
+        let Some(photo) = self.photo else { return };
+        // Objects that came before any photo are placed with the first one.
+        let unplaced: Vec<_> = self.scene.objects.iter().map(|object| object.id).collect();
+        for id in unplaced {
+            if !self.scene.annotations.keys().any(|(_, object)| *object == id) {
+                self.scene.place(photo, id, now_ms);
+            }
+        }
+    }
+
+    /// A camera file is for the photos of its drop, else for the one that is shown, else for the ones to come.
+    fn take_camera(&mut self, file: CameraFile, new_photos: &[PhotoId]) {
+        let shown = self.photo;
+        let targets = if new_photos.is_empty() { shown.as_slice() } else { new_photos };
+        if targets.is_empty() {
+            let mut incoming = Incoming::new(&file.file_name);
+            incoming.cameras_to_come = Some(file);
+            self.waiting.push(Waiting { incoming, poses_as: PosesAs::Annotations, missing: vec!["a photo".to_owned()] });
+            return;
+        }
+        self.give_camera(file, targets);
+    }
+
+    fn give_camera(&mut self, file: CameraFile, photos: &[PhotoId]) {
+        let mut differing = Vec::new();
+        for &id in photos {
+            let Some(photo) = self.scene.photo(id) else { continue };
+            let (width, height) = (photo.asset.width, photo.asset.height);
+            if file.differs_in_size(width, height) {
+                differing.push(id);
+            } else {
+                let origin = CameraOrigin::File(file.file_name.clone());
+                self.scene.set_camera(id, file.intrinsics(width, height), origin);
+            }
+        }
+        if !differing.is_empty() {
+            self.questions.push(Question::CameraSize { file, photos: differing });
+        }
+    }
+
+    /// Gives poses to the scene; what finds no photo or mesh waits for them.
+    fn take_poses(&mut self, incoming: Incoming, poses_as: PosesAs, now_ms: f64) -> Vec<Effect> {
+        let outcome = incoming.apply(&mut self.scene, poses_as, now_ms);
+        let mut effects: Vec<Effect> =
+            remarks_of(&incoming, &outcome).map(|remark| notify_warning(&incoming.file_name, remark)).collect();
+        effects.push(Effect::Notify(describe(&incoming, poses_as, &outcome)));
+        self.ask_about_cameras(&outcome);
+        if !outcome.missing.is_empty() {
+            self.waiting.retain(|waiting| waiting.incoming != incoming);
+            self.waiting.push(Waiting { incoming, poses_as, missing: outcome.missing });
+        }
+        self.show_annotated_photo();
+        effects
+    }
+
+    fn ask_about_cameras(&mut self, outcome: &Outcome) {
+        for (photo, file) in &outcome.differing_cameras {
+            let known = self.questions.iter_mut().find_map(|question| match question {
+                Question::CameraSize { file: asked, photos } if asked == file => Some(photos),
+                _ => None,
+            });
+            match known {
+                Some(photos) if photos.contains(photo) => {}
+                Some(photos) => photos.push(*photo),
+                None => self.questions.push(Question::CameraSize { file: file.clone(), photos: vec![*photo] }),
+            }
+        }
+    }
+
+    /// After files have come: does anything that waited find its photo or mesh now?
+    fn retry_waiting(&mut self, now_ms: f64) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        for waiting in std::mem::take(&mut self.waiting) {
+            if let Some(file) = waiting.incoming.cameras_to_come.clone() {
+                match self.photo {
+                    Some(_) => {
+                        let guessed = self.scene.photos.iter().filter(|photo| photo.camera_origin.is_guess());
+                        let photos: Vec<PhotoId> = guessed.map(|photo| photo.id).collect();
+                        self.give_camera(file, &photos);
+                    }
+                    None => self.waiting.push(waiting),
+                }
+                continue;
+            }
+            let outcome = waiting.incoming.apply(&mut self.scene.clone(), waiting.poses_as, now_ms);
+            if outcome.missing == waiting.missing {
+                self.waiting.push(waiting);
+            } else {
+                effects.extend(self.take_poses(waiting.incoming, waiting.poses_as, now_ms));
+            }
+        }
+        effects
+    }
+
+    /// If nothing is placed in the photo that is shown, another one that has something is a better start.
+    fn show_annotated_photo(&mut self) {
+        let Some(photo) = self.photo else { return };
+        if self.scene.objects_in(photo).next().is_none() {
+            let annotated = |id: PhotoId| self.scene.objects_in(id).next().is_some();
+            if let Some(better) = self.scene.photos.iter().find(|photo| annotated(photo.id)) {
+                self.photo = Some(better.id);
+            }
+        }
+        self.select_something_in_photo();
+    }
+
+    pub(super) fn answer(&mut self, answer: Answer, now_ms: f64) -> Result<Vec<Effect>, CommandError> {
+        if self.questions.is_empty() {
+            return Err(CommandError::Failed("no question is open".to_owned()));
+        }
+        let question = self.questions.remove(0);
+        self.finish_gesture();
+        let before = self.snapshot();
+        let effects = match (&question, answer) {
+            (_, Answer::Refuse) => Vec::new(),
+            (Question::PosesAs(incoming), Answer::UsePosesAs(poses_as)) => {
+                self.take_poses(incoming.clone(), poses_as, now_ms)
+            }
+            (Question::CameraSize { file, photos }, Answer::ScaleCamera) => {
+                self.scale_camera(file, photos);
+                Vec::new()
+            }
+            _ => {
+                self.questions.insert(0, question);
+                return Err(CommandError::Failed("that is no answer to the open question".to_owned()));
+            }
+        };
+        if self.scene != before.scene {
+            self.history.push("Import poses", before);
+        }
+        self.touched();
+        Ok(effects)
+    }
+
+    fn scale_camera(&mut self, file: &CameraFile, photos: &[PhotoId]) {
+        for &id in photos {
+            let Some(photo) = self.scene.photo(id) else { continue };
+            let (width, height) = (photo.asset.width, photo.asset.height);
+            let camera = file.intrinsics(width, height).scaled_to(width, height);
+            self.scene.set_camera(id, camera, CameraOrigin::File(file.file_name.clone()));
+        }
+    }
+
+    /// Puts a saved scene in place of this one.
+    pub(super) fn open(&mut self, opening: Opening, now_ms: f64) -> Vec<Effect> {
+        self.finish_gesture();
+        let before = self.snapshot();
+        let document = &opening.document;
+        let incoming = match Incoming::from_document(&document.name, document) {
+            Ok(incoming) => incoming,
+            Err(error) => return vec![Effect::Notify(Notice::error(error.to_string()))],
+        };
+        let mut scene = Scene::named(&document.name);
+        // In the document's order, whatever the order in which the files were read.
+        for sha256 in document.photo_hashes() {
+            if let Some(asset) = opening.photos.iter().find(|asset| Some(asset.sha256) == sha256) {
+                scene.add_photo(asset.clone());
+            }
+        }
+        for sha256 in document.mesh_hashes() {
+            if let Some(mesh) = opening.meshes.iter().find(|mesh| Some(mesh.sha256) == sha256) {
+                scene.add_object(mesh.clone());
+            }
+        }
+        let outcome = incoming.apply(&mut scene, PosesAs::Annotations, now_ms);
+        self.scene = scene;
+        self.questions.clear();
+        self.waiting.clear();
+        self.look = Look { overlay_opacity: document.view.overlay_opacity.clamp(0.0, 1.0), outline: document.view.outline };
+        self.restore_view(document);
+        if opening.restored {
+            self.history = History::default();
+        } else {
+            self.history.push("Open scene", before);
+        }
+        self.touched();
+        let mut effects: Vec<Effect> =
+            remarks_of(&incoming, &outcome).map(|remark| notify_warning("scene", remark)).collect();
+        if !outcome.missing.is_empty() {
+            effects.push(Effect::Notify(describe(&incoming, PosesAs::Annotations, &outcome)));
+            self.waiting.push(Waiting { incoming, poses_as: PosesAs::Annotations, missing: outcome.missing });
+        }
+        effects
+    }
+
+    /// Ids are given anew when a scene is opened; what was shown is found by its position.
+    fn restore_view(&mut self, document: &Document) {
+        let (photo, object) = document.view_positions();
+        self.photo = photo.and_then(|index| self.scene.photos.get(index)).map(|photo| photo.id);
+        self.selected = object.and_then(|index| self.scene.objects.get(index)).map(|object| object.id);
+        self.keep_selection_valid();
+    }
+}
+
+fn remarks_of<'a>(incoming: &'a Incoming, outcome: &'a Outcome) -> impl Iterator<Item = &'a String> {
+    incoming.remarks.iter().chain(&outcome.problems)
+}
+
+fn notify_warning(file_name: &str, text: &str) -> Effect {
+    Effect::Notify(Notice::warning(format!("{file_name}: {text}")))
+}
+
+fn describe(incoming: &Incoming, poses_as: PosesAs, outcome: &Outcome) -> Notice {
+    let what = match poses_as {
+        PosesAs::Annotations => "used as annotations",
+        PosesAs::Reference => "kept as a reference",
+    };
+    let count = outcome.applied;
+    let mut text = format!("{}: {count} pose{} {what}", incoming.file_name, if count == 1 { "" } else { "s" });
+    if outcome.missing.is_empty() {
+        return Notice::info(text);
+    }
+    let shown: Vec<&str> = outcome.missing.iter().take(4).map(String::as_str).collect();
+    let more = outcome.missing.len() - shown.len();
+    text += &format!(". Drop these files too: {}", shown.join(", "));
+    if more > 0 {
+        text += &format!(" and {more} more");
+    }
+    Notice::warning(text)
+}

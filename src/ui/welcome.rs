@@ -1,0 +1,84 @@
+//! The empty scene: what to drop, and a way to try without having anything.
+
+use egui::{Align2, Area, Color32, CornerRadius, Id, Order, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
+
+use super::{Surroundings, theme};
+use crate::session::{Command, CommandId};
+
+const STEPS: [(&str, &str, &str); 3] = [
+    ("1", "A photo", "PNG or JPEG"),
+    ("2", "A 3D mesh of the object", "PLY, OBJ or GLB"),
+    ("3", "The camera", "JSON, or type fx fy cx cy later"),
+];
+
+pub fn draw(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
+    let rect = ui.max_rect();
+    // The whole ground takes the click too: a large target for the obvious thing.
+    let ground = ui.interact(rect, Id::unique("welcome ground"), Sense::click());
+    drop_border(ui, rect.shrink(18.0), around.files_hover);
+    Area::new(Id::unique("welcome")).order(Order::Middle).fixed_pos(rect.center()).pivot(Align2::CENTER_CENTER).show(
+        ui.ctx(),
+        |ui| {
+            ui.set_width(430.0);
+            ui.vertical_centered(|ui| card(ui, around, commands));
+        },
+    );
+    if ground.clicked() {
+        commands.push(Command::Run(CommandId::OpenFiles));
+    }
+}
+
+fn card(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
+    let title = if around.files_hover { "Let go to open" } else { "Drop your files here" };
+    ui.heading(RichText::new(title).size(26.0).strong());
+    ui.add_space(2.0);
+    ui.label(RichText::new("and get the object's 6D pose. Nothing leaves this browser.").weak());
+    ui.add_space(18.0);
+    for (number, what, how) in STEPS {
+        step(ui, number, what, how);
+    }
+    ui.add_space(16.0);
+    ui.horizontal(|ui| {
+        let width = 150.0;
+        ui.add_space((ui.available_width() - 2.0 * width - 8.0) / 2.0);
+        let size = Vec2::new(width, 34.0);
+        if ui.add(theme::primary_button("Open files…").min_size(size)).clicked() {
+            commands.push(Command::Run(CommandId::OpenFiles));
+        }
+        if ui.add(egui::Button::new("Try the example").min_size(size)).clicked() {
+            commands.push(Command::Run(CommandId::LoadExample));
+        }
+    });
+    ui.add_space(12.0);
+    ui.label(RichText::new("Also: poses you saved (JSON), a workspace (zip), a Vision6D ground truth").small().weak());
+    if let Some(busy) = &around.busy {
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            ui.add_space(ui.available_width() / 2.0 - 60.0);
+            ui.spinner();
+            ui.label(busy);
+        });
+    }
+}
+
+fn step(ui: &mut Ui, number: &str, what: &str, how: &str) {
+    ui.horizontal(|ui| {
+        ui.add_space(64.0);
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(24.0), Sense::hover());
+        ui.painter().circle_filled(rect.center(), 11.0, Color32::from_rgb(40, 60, 92));
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, number, egui::FontId::proportional(13.0), Color32::WHITE);
+        ui.label(RichText::new(what).strong());
+        ui.label(RichText::new(how).weak());
+    });
+}
+
+fn drop_border(ui: &Ui, rect: egui::Rect, hovered: bool) {
+    let color = if hovered { theme::ACCENT } else { Color32::from_rgb(56, 61, 73) };
+    let stroke = Stroke::new(if hovered { 2.0 } else { 1.5 }, color);
+    if hovered {
+        ui.painter().rect(rect, CornerRadius::same(14), theme::ACCENT.gamma_multiply(0.08), stroke, StrokeKind::Inside);
+        return;
+    }
+    let corners = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
+    ui.painter().extend(egui::Shape::dashed_line(&corners, stroke, 8.0, 7.0));
+}

@@ -1,0 +1,276 @@
+//! The page's real mouse and keyboard. Positions are CSS pixels; the page gets a frame after every step.
+
+use anyhow::{Context as _, ensure};
+use serde_json::{Value, json};
+
+use crate::page::Page;
+
+/// A point in the page, in CSS pixels from its top left.
+pub type Point = (f64, f64);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Button {
+    Left,
+    Middle,
+    Right,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Modifier {
+    Alt,
+    Control,
+    Meta,
+    Shift,
+}
+
+impl Button {
+    fn name(self) -> &'static str {
+        match self {
+            Button::Left => "left",
+            Button::Middle => "middle",
+            Button::Right => "right",
+        }
+    }
+
+    /// Its bit among the buttons that are held.
+    fn bit(self) -> u32 {
+        match self {
+            Button::Left => 1,
+            Button::Right => 2,
+            Button::Middle => 4,
+        }
+    }
+}
+
+impl Modifier {
+    fn key(self) -> &'static str {
+        match self {
+            Modifier::Alt => "Alt",
+            Modifier::Control => "Control",
+            Modifier::Meta => "Meta",
+            Modifier::Shift => "Shift",
+        }
+    }
+
+    fn bit(self) -> u32 {
+        match self {
+            Modifier::Alt => 1,
+            Modifier::Control => 2,
+            Modifier::Meta => 4,
+            Modifier::Shift => 8,
+        }
+    }
+}
+
+impl Page {
+    pub fn mouse_move(&mut self, to: Point) -> anyhow::Result<()> {
+        self.mouse("mouseMoved", to, json!({ "button": "none" }))
+    }
+
+    pub fn mouse_down(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
+        self.press(at, button, 1, &[])
+    }
+
+    pub fn mouse_up(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
+        self.release(at, button, 1, &[])
+    }
+
+    pub fn click(&mut self, at: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        self.clicks(at, button, 1, modifiers)
+    }
+
+    pub fn double_click(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
+        self.clicks(at, button, 1, &[])?;
+        self.press(at, button, 2, &[])?;
+        self.release(at, button, 2, &[])
+    }
+
+    /// Presses, moves in equal steps, releases.
+    pub fn drag(
+        &mut self,
+        from: Point,
+        to: Point,
+        button: Button,
+        steps: u32,
+        modifiers: &[Modifier],
+    ) -> anyhow::Result<()> {
+        ensure!(steps > 0, "A drag without steps");
+        let bits = bits(modifiers);
+        self.hold(modifiers, |page| {
+            page.mouse_move(from)?;
+            page.press(from, button, 1, modifiers)?;
+            for step in 1..=steps {
+                let share = f64::from(step) / f64::from(steps);
+                let at = (from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share);
+                let held = json!({ "button": button.name(), "buttons": button.bit(), "modifiers": bits });
+                page.mouse("mouseMoved", at, held)?;
+            }
+            page.release(to, button, 1, modifiers)
+        })
+    }
+
+    /// Turns the wheel over a point; a positive delta scrolls down.
+    pub fn wheel(&mut self, at: Point, delta: f64, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        let bits = bits(modifiers);
+        self.hold(modifiers, |page| {
+            page.mouse_move(at)?;
+            page.mouse("mouseWheel", at, json!({ "deltaX": 0, "deltaY": delta, "modifiers": bits }))
+        })
+    }
+
+    /// Presses and releases a key, named as in `KeyboardEvent.key`: `"a"`, `"5"`, `"Enter"`, `"ArrowLeft"`, `"F1"`.
+    pub fn key(&mut self, key: &str, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        let bits = bits(modifiers);
+        let types_text = modifiers.iter().all(|modifier| *modifier == Modifier::Shift);
+        let shift = modifiers.contains(&Modifier::Shift);
+        self.hold(modifiers, |page| {
+            let mut fields = key_fields(key, shift)?;
+            fields["modifiers"] = bits.into();
+            if types_text && let Some(text) = text_of(&fields) {
+                fields["text"] = text.into();
+            }
+            page.keyboard("keyDown", &fields)?;
+            page.keyboard("keyUp", &fields)
+        })
+    }
+
+    /// Types into whatever has the focus, one character after the other.
+    pub fn type_text(&mut self, text: &str) -> anyhow::Result<()> {
+        for character in text.chars() {
+            self.call("Input.insertText", json!({ "text": character.to_string() }))?;
+            self.next_frame()?;
+        }
+        Ok(())
+    }
+
+    fn clicks(
+        &mut self,
+        at: Point,
+        button: Button,
+        count: u32,
+        modifiers: &[Modifier],
+    ) -> anyhow::Result<()> {
+        self.hold(modifiers, |page| {
+            page.mouse_move(at)?;
+            page.press(at, button, count, modifiers)?;
+            page.release(at, button, count, modifiers)
+        })
+    }
+
+    fn press(&mut self, at: Point, button: Button, count: u32, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        let held = button.bit();
+        let fields = json!({ "button": button.name(), "buttons": held, "clickCount": count, "modifiers": bits(modifiers) });
+        self.mouse("mousePressed", at, fields)
+    }
+
+    fn release(
+        &mut self,
+        at: Point,
+        button: Button,
+        count: u32,
+        modifiers: &[Modifier],
+    ) -> anyhow::Result<()> {
+        let fields = json!({ "button": button.name(), "buttons": 0, "clickCount": count, "modifiers": bits(modifiers) });
+        self.mouse("mouseReleased", at, fields)
+    }
+
+    fn mouse(&mut self, kind: &str, (x, y): Point, mut fields: Value) -> anyhow::Result<()> {
+        fields["type"] = kind.into();
+        fields["x"] = x.into();
+        fields["y"] = y.into();
+        self.call("Input.dispatchMouseEvent", fields)?;
+        self.next_frame()
+    }
+
+    fn keyboard(&mut self, kind: &str, fields: &Value) -> anyhow::Result<()> {
+        let mut fields = fields.clone();
+        fields["type"] = kind.into();
+        self.call("Input.dispatchKeyEvent", fields)?;
+        self.next_frame()
+    }
+
+    /// Holds the modifier keys down around an action, even if it fails.
+    fn hold(
+        &mut self,
+        modifiers: &[Modifier],
+        action: impl FnOnce(&mut Page) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        for (index, modifier) in modifiers.iter().enumerate() {
+            let mut fields = key_fields(modifier.key(), false)?;
+            fields["modifiers"] = bits(&modifiers[..=index]).into();
+            self.keyboard("rawKeyDown", &fields)?;
+        }
+        let result = action(self);
+        for (index, modifier) in modifiers.iter().enumerate().rev() {
+            let mut fields = key_fields(modifier.key(), false)?;
+            fields["modifiers"] = bits(&modifiers[..index]).into();
+            self.keyboard("keyUp", &fields)?;
+        }
+        result
+    }
+}
+
+fn bits(modifiers: &[Modifier]) -> u32 {
+    modifiers.iter().fold(0, |sum, modifier| sum | modifier.bit())
+}
+
+/// What a key types: itself if it is one character, and a line break for Enter.
+fn text_of(fields: &Value) -> Option<String> {
+    let key = fields["key"].as_str()?;
+    if key == "Enter" {
+        return Some("\r".to_owned());
+    }
+    (key.chars().count() == 1).then(|| key.to_owned())
+}
+
+/// `key`, `code` and the Windows virtual key code that the browser's own events carry (US layout).
+fn key_fields(name: &str, shift: bool) -> anyhow::Result<Value> {
+    let (key, code, virtual_key) = match name.as_bytes() {
+        [letter] if letter.is_ascii_alphabetic() => {
+            let upper = letter.to_ascii_uppercase();
+            let key = if shift { upper } else { letter.to_ascii_lowercase() };
+            (char::from(key).to_string(), format!("Key{}", char::from(upper)), u32::from(upper))
+        }
+        [digit] if digit.is_ascii_digit() => (name.to_owned(), format!("Digit{name}"), u32::from(*digit)),
+        [b'F', number @ ..] if !number.is_empty() => {
+            let number: u32 = name[1..].parse().with_context(|| format!("There is no key {name}"))?;
+            (name.to_owned(), name.to_owned(), 111 + number)
+        }
+        _ => {
+            let (code, virtual_key) = named_key(name).with_context(|| format!("There is no key {name}"))?;
+            (name.to_owned(), code.to_owned(), virtual_key)
+        }
+    };
+    Ok(json!({ "key": key, "code": code, "windowsVirtualKeyCode": virtual_key }))
+}
+
+fn named_key(name: &str) -> Option<(&'static str, u32)> {
+    Some(match name {
+        "Backspace" => ("Backspace", 8),
+        "Tab" => ("Tab", 9),
+        "Enter" => ("Enter", 13),
+        "Shift" => ("ShiftLeft", 16),
+        "Control" => ("ControlLeft", 17),
+        "Alt" => ("AltLeft", 18),
+        "Escape" => ("Escape", 27),
+        " " => ("Space", 32),
+        "PageUp" => ("PageUp", 33),
+        "PageDown" => ("PageDown", 34),
+        "End" => ("End", 35),
+        "Home" => ("Home", 36),
+        "ArrowLeft" => ("ArrowLeft", 37),
+        "ArrowUp" => ("ArrowUp", 38),
+        "ArrowRight" => ("ArrowRight", 39),
+        "ArrowDown" => ("ArrowDown", 40),
+        "Delete" => ("Delete", 46),
+        "Meta" => ("MetaLeft", 91),
+        "=" | "+" => ("Equal", 187),
+        "," => ("Comma", 188),
+        "-" => ("Minus", 189),
+        "." => ("Period", 190),
+        "/" | "?" => ("Slash", 191),
+        "[" => ("BracketLeft", 219),
+        "]" => ("BracketRight", 221),
+        _ => return None,
+    })
+}
