@@ -27,7 +27,19 @@ impl WidgetWatcher {
     /// The widgets of the last tree, and none of an older one the next time.
     pub fn take(&mut self) -> Option<Vec<Widget>> {
         let tree = self.tree.take()?;
-        let widgets = tree.nodes.iter().filter_map(|(id, node)| widget(*id, node));
+        let text_of = |id: &NodeId| {
+            let node = tree.nodes.iter().find(|(candidate, _)| candidate == id);
+            node.and_then(|(_, node)| node.value().map(str::to_owned))
+        };
+        // Runs of text are parts of the labels, which are here too.
+        let nodes = tree.nodes.iter().filter(|(_, node)| node.role() != Role::TextRun);
+        let widgets = nodes.filter_map(|(id, node)| {
+            let mut widget = widget(*id, node)?;
+            if widget.label.is_empty() {
+                widget.label = node.labelled_by().iter().find_map(text_of).unwrap_or_default();
+            }
+            Some(widget)
+        });
         Some(widgets.collect())
     }
 }

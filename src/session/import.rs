@@ -279,16 +279,19 @@ fn describe(incoming: &Incoming, poses_as: PosesAs, outcome: &Outcome) -> Notice
         PosesAs::Annotations => "used as annotations",
         PosesAs::Reference => "kept as a reference",
     };
-    let count = outcome.applied;
-    let mut text = format!("{}: {count} pose{} {what}", incoming.file_name, if count == 1 { "" } else { "s" });
+    let (name, count, all) = (&incoming.file_name, outcome.applied, incoming.pose_count());
+    let plural = if all == 1 { "" } else { "s" };
     if outcome.missing.is_empty() {
-        return Notice::info(text);
+        return Notice::info(format!("{name}: {count} pose{plural} {what}"));
     }
     let shown: Vec<&str> = outcome.missing.iter().take(4).map(String::as_str).collect();
-    let more = outcome.missing.len() - shown.len();
-    text += &format!(". Drop these files too: {}", shown.join(", "));
-    if more > 0 {
-        text += &format!(" and {more} more");
+    let mut files = shown.join(", ");
+    if outcome.missing.len() > shown.len() {
+        files += &format!(" and {} more", outcome.missing.len() - shown.len());
     }
-    Notice::warning(text)
+    if count == 0 {
+        Notice::warning(format!("{name}: its poses wait for their photos and meshes. Drop these files too: {files}"))
+    } else {
+        Notice::info(format!("{name}: {count} of {all} pose{plural} {what}, the others wait for {files}"))
+    }
 }

@@ -37,7 +37,7 @@ fn origin(ui: &mut Ui, photo: &Photo) {
 fn fields(ui: &mut Ui, photo: &Photo, form: &mut CameraForm, commands: &mut Vec<Command>) {
     let mut camera = form.edited.unwrap_or(photo.camera);
     let mut responses = Vec::new();
-    Grid::new("camera fields").num_columns(4).spacing([6.0, 6.0]).show(ui, |ui| {
+    Grid::new("camera fields").num_columns(4).min_col_width(16.0).spacing([8.0, 6.0]).show(ui, |ui| {
         let mut field = |ui: &mut Ui, label: &str, value: &mut f64| {
             let name = ui.label(label);
             let field = DragValue::new(value).speed(0.1).max_decimals(5).update_while_editing(false);

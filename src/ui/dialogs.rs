@@ -21,7 +21,7 @@ const GESTURES: [(&str, &str); 10] = [
 
 pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, commands: &mut Vec<Command>) {
     if let Some(question) = session.question() {
-        let modal = Modal::new(Id::unique("question")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("question")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| {
             ui.set_width(400.0);
             match question {
                 Question::PosesAs(incoming) => poses_question(ui, &incoming.file_name, incoming.pose_count(), commands),
@@ -39,7 +39,7 @@ pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, command
         return;
     }
     if state.shortcuts_open {
-        let modal = Modal::new(Id::unique("shortcuts")).show(ctx, |ui| shortcuts(ui, &mut state.shortcuts_open));
+        let modal = Modal::new(Id::unique("shortcuts")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| shortcuts(ui, &mut state.shortcuts_open));
         if modal.should_close() {
             state.shortcuts_open = false;
         }

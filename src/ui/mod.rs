@@ -2,6 +2,7 @@
 
 mod camera_panel;
 mod dialogs;
+mod icons;
 mod pose_panel;
 mod scene_panel;
 mod shortcuts;
@@ -73,7 +74,8 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     Panel::top("top bar").frame(theme::bar_frame(ui)).show(ui, |ui| {
         top_bar::draw(ui, session, around, &mut asked);
     });
-    if !state.panels_hidden {
+    // An empty scene has nothing to list.
+    if !state.panels_hidden && !session.scene().is_empty() {
         Panel::left("side panel").frame(theme::panel_frame(ui)).exact_size(theme::PANEL_WIDTH).resizable(false).show(
             ui,
             |ui| side_panel(ui, session, &mut state.camera_form, &mut asked.commands),

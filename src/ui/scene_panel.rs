@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align, Button, Layout, RichText, Sense, Slider, Ui, Vec2};
 
+use super::icons::{Icon, icon_button};
 use super::theme;
 use crate::scene::{Annotation, AnnotationState, Object, Photo, Scene, reference_color};
 use crate::session::{Command, CommandId, Session};
@@ -17,30 +18,33 @@ pub fn photos(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let shown = session.photo().map(|photo| photo.id);
     for photo in photos {
         ui.horizontal(|ui| {
-            let (glyph, color, meaning) = photo_state(session.scene(), photo);
-            ui.label(RichText::new(glyph).color(color)).on_hover_text(meaning);
-            let button = Button::selectable(Some(photo.id) == shown, &photo.asset.file_name).truncate();
-            if ui.add_sized([ui.available_width() - 34.0, 22.0], button).clicked() {
+            photo_state(ui, session.scene(), photo);
+            let name = RichText::new(&photo.asset.file_name);
+            if name_button(ui, Some(photo.id) == shown, name, 38.0).clicked() {
                 commands.push(Command::ShowPhoto(photo.id));
             }
-            if small_button(ui, "🗑", &format!("Remove {}", photo.asset.file_name)) {
+            if row_button(ui, Icon::Trash, &format!("Remove {}", photo.asset.file_name)) {
                 commands.push(Command::RemovePhoto(photo.id));
             }
         });
     }
 }
 
-/// What has been done in a photo, as a glyph, a colour and words.
-fn photo_state(scene: &Scene, photo: &Photo) -> (&'static str, egui::Color32, &'static str) {
+/// What has been done in a photo: an empty, a half or a full dot, and words.
+fn photo_state(ui: &mut Ui, scene: &Scene, photo: &Photo) {
     let states: Vec<AnnotationState> = scene.objects_in(photo.id).map(|(_, annotation)| annotation.state).collect();
     let done = |state: &AnnotationState| matches!(state, AnnotationState::Posed | AnnotationState::Confirmed);
-    if states.is_empty() {
-        ("○", theme::color32(crate::scene::Rgb([110, 116, 128])), "No object in this photo yet")
+    let (filled, color, meaning) = if states.is_empty() {
+        (0.0, ui.visuals().weak_text_color(), "No object in this photo yet")
     } else if states.iter().all(done) {
-        ("●", theme::GOOD, "Every object in this photo is posed")
+        (5.0, theme::GOOD, "Every object in this photo is posed")
     } else {
-        ("◐", theme::WARNING, "An object in this photo waits for its pose")
-    }
+        (2.2, theme::WARNING, "An object in this photo waits for its pose")
+    };
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(12.0), Sense::hover());
+    ui.painter().circle(rect.center(), 4.5, egui::Color32::TRANSPARENT, egui::Stroke::new(1.3, color));
+    ui.painter().circle_filled(rect.center(), filled, color);
+    response.on_hover_text(meaning);
 }
 
 pub fn objects(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
@@ -70,10 +74,10 @@ fn object_row(
         ui.painter().rect_filled(swatch, 3.0, color);
         let name = RichText::new(&object.name);
         let name = if annotation.is_some() { name } else { name.weak() };
-        let button = Button::selectable(session.selected() == Some(object.id), name).truncate();
         let triangles = object.mesh.mesh.triangles().len();
         let details = format!("{}, {triangles} triangles", object.mesh.file_name);
-        if ui.add_sized([ui.available_width() - 96.0, 22.0], button).on_hover_text(details).clicked() {
+        let selected = session.selected() == Some(object.id);
+        if name_button(ui, selected, name, 98.0).on_hover_text(details).clicked() {
             commands.push(Command::Select(Some(object.id)));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -83,8 +87,9 @@ fn object_row(
 }
 
 fn object_buttons(ui: &mut Ui, session: &Session, object: &Object, placed: bool, commands: &mut Vec<Command>) {
-    ui.add_space(6.0);
-    if small_button(ui, "🗑", &format!("Remove {}", object.name)) {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    ui.add_space(8.0);
+    if row_button(ui, Icon::Trash, &format!("Remove {}", object.name)) {
         commands.push(Command::RemoveObject(object.id));
     }
     if !placed {
@@ -95,12 +100,12 @@ fn object_buttons(ui: &mut Ui, session: &Session, object: &Object, placed: bool,
         }
         return;
     }
-    let (glyph, tooltip) = if object.locked { ("🔒", "Unlock") } else { ("🔓", "Lock") };
-    if small_button(ui, glyph, &format!("{tooltip} {}", object.name)) {
+    let (icon, tooltip) = if object.locked { (Icon::Lock, "Unlock") } else { (Icon::LockOpen, "Lock") };
+    if row_button(ui, icon, &format!("{tooltip} {}", object.name)) {
         commands.push(Command::SetObjectLocked(object.id, !object.locked));
     }
-    let (glyph, tooltip) = if object.visible { ("👁", "Hide") } else { ("–", "Show") };
-    if small_button(ui, glyph, &format!("{tooltip} {}", object.name)) {
+    let (icon, tooltip) = if object.visible { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
+    if row_button(ui, icon, &format!("{tooltip} {}", object.name)) {
         commands.push(Command::SetObjectVisible(object.id, !object.visible));
     }
 }
@@ -121,8 +126,8 @@ pub fn references(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
                 commands.push(Command::SetReferenceVisible { name: name.clone(), visible });
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.add_space(6.0);
-                if small_button(ui, "🗑", &format!("Remove the reference {}", reference.name)) {
+                ui.add_space(8.0);
+                if row_button(ui, Icon::Trash, &format!("Remove the reference {}", reference.name)) {
                     commands.push(Command::RemoveReference { name });
                 }
             });
@@ -143,9 +148,15 @@ pub fn overlay(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     }
 }
 
-/// A button of one glyph; `label` is its tooltip and its name for those who do not see the glyph.
-fn small_button(ui: &mut Ui, glyph: &str, label: &str) -> bool {
-    let response = ui.add(Button::new(RichText::new(glyph).size(13.0)).frame(false).min_size(Vec2::new(20.0, 20.0)));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label));
-    response.on_hover_text(label).clicked()
+fn row_button(ui: &mut Ui, icon: Icon, label: &str) -> bool {
+    icon_button(ui, icon, label, label, true).clicked()
+}
+
+/// A name that fills the row, and can be chosen.
+fn name_button(ui: &mut Ui, selected: bool, text: RichText, room_for_buttons: f32) -> egui::Response {
+    let width = (ui.available_width() - room_for_buttons).max(40.0);
+    ui.allocate_ui_with_layout(Vec2::new(width, 22.0), Layout::left_to_right(Align::Center).with_main_justify(true), |ui| {
+        ui.add(Button::selectable(selected, (text, egui::Atom::grow())).truncate())
+    })
+    .inner
 }

@@ -88,6 +88,11 @@ pub fn panel_frame(_ui: &egui::Ui) -> Frame {
     Frame::NONE.fill(PANEL).inner_margin(Margin { left: 12, right: 4, top: 4, bottom: 4 })
 }
 
+/// Room inside dialogs.
+pub fn dialog_frame(ctx: &egui::Context) -> Frame {
+    Frame::popup(&ctx.global_style()).inner_margin(Margin::same(18))
+}
+
 /// A quiet box over the viewport.
 pub fn overlay_frame() -> Frame {
     Frame::NONE

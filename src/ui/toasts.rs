@@ -1,7 +1,8 @@
 //! Messages that come and go; errors stay until they are read.
 
-use egui::{Align2, Area, Color32, Frame, Id, Margin, Order, RichText, Stroke, Vec2};
+use egui::{Align2, Area, Color32, Frame, Id, Margin, Order, Sense, Stroke, Vec2};
 
+use super::icons::{Icon, icon_button};
 use super::theme;
 use crate::session::{Notice, Severity};
 
@@ -90,13 +91,15 @@ fn draw_one(ui: &mut egui::Ui, notice: &Notice) -> bool {
         .inner_margin(Margin::symmetric(12, 8));
     let mut closed = false;
     frame.show(ui, |ui| {
-        ui.set_width(320.0);
+        ui.set_width(330.0);
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new("●").color(color));
-            ui.add_sized([268.0, 0.0], egui::Label::new(&notice.text).wrap());
-            let close = ui.add(egui::Button::new("✖").frame(false));
-            close.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Close message"));
-            closed = close.clicked();
+            let (dot, _) = ui.allocate_exact_size(Vec2::new(12.0, 18.0), Sense::hover());
+            ui.painter().circle_filled(dot.center(), 4.0, color);
+            ui.vertical(|ui| {
+                ui.set_width(268.0);
+                ui.add(egui::Label::new(&notice.text).wrap());
+            });
+            closed = icon_button(ui, Icon::Close, "Close message", "Close", true).clicked();
         });
     });
     closed

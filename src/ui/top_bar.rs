@@ -2,6 +2,7 @@
 
 use egui::{Align, Button, Layout, MenuBar, RichText, Ui};
 
+use super::icons::{Icon, icon_button};
 use super::{Asked, Saving, Surroundings, shortcut_text, theme};
 use crate::session::{COMMANDS, Command, CommandId, CommandInfo, Menu, Session, Tool};
 
@@ -23,8 +24,8 @@ pub fn draw(ui: &mut Ui, session: &Session, around: &Surroundings<'_>, asked: &m
         ui.separator();
         tools(ui, session, &mut asked.commands);
         ui.separator();
-        icon_button(ui, "⟲", CommandId::Undo, session, &mut asked.commands);
-        icon_button(ui, "⟳", CommandId::Redo, session, &mut asked.commands);
+        history_button(ui, Icon::Undo, CommandId::Undo, session, &mut asked.commands);
+        history_button(ui, Icon::Redo, CommandId::Redo, session, &mut asked.commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| status(ui, session, around, asked));
     });
 }
@@ -52,11 +53,9 @@ fn tools(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     }
 }
 
-fn icon_button(ui: &mut Ui, icon: &str, id: CommandId, session: &Session, commands: &mut Vec<Command>) {
-    let info = id.info();
-    let response = ui.add_enabled(session.unavailable(id).is_none(), Button::new(RichText::new(icon).size(16.0)));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), info.text));
-    if response.on_hover_text(tooltip(info)).clicked() {
+fn history_button(ui: &mut Ui, icon: Icon, id: CommandId, session: &Session, commands: &mut Vec<Command>) {
+    let enabled = session.unavailable(id).is_none();
+    if icon_button(ui, icon, id.info().text, &tooltip(id.info()), enabled).clicked() {
         commands.push(Command::Run(id));
     }
 }

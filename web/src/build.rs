@@ -23,12 +23,14 @@ pub fn default_folder() -> PathBuf {
 
 /// Compiles the page and puts it into `out`, which keeps its old content if anything fails.
 pub fn page(profile: Profile, out: &Path) -> anyhow::Result<()> {
+    check_replaceable(out)?;
     let wasm = compile::wasm(profile)?;
     assemble(&wasm, profile, out)
 }
 
 /// Builds the site around a compiled wasm module and puts it into `out`.
 pub fn assemble(wasm: &Wasm, profile: Profile, out: &Path) -> anyhow::Result<()> {
+    check_replaceable(out)?;
     let root = crate::workspace_root();
     let bindings = compile::bindings(wasm, profile)?;
     let mut site = Site::compose(&site::Sources::read(&root)?, bindings, &wasm.package_version)?;
@@ -80,6 +82,18 @@ fn check_budget(wasm_brotli: usize) -> anyhow::Result<()> {
 
 fn megabytes(bytes: usize) -> String {
     format!("{:.2} MB", bytes as f64 / 1e6)
+}
+
+/// The whole folder is replaced, so it must be a page that was built earlier, or have nothing in it.
+fn check_replaceable(out: &Path) -> anyhow::Result<()> {
+    let is_page = out.join("build.json").is_file();
+    let is_empty = || out.read_dir().is_ok_and(|mut entries| entries.next().is_none());
+    ensure!(
+        !out.exists() || is_page || is_empty(),
+        "{} holds other files than a page; name a folder of its own",
+        out.display()
+    );
+    Ok(())
 }
 
 /// Writes the site beside `out` first and swaps the folders last, so that `out` is never half a page.

@@ -1,0 +1,100 @@
+//! The command line as a user runs it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+use crate::support::{CAMERA_JSON, box_mesh, data_folder, flat_photo};
+
+fn pinpose(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pinpose")).args(arguments).output().unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::remove_dir_all(&folder).ok();
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A photo, a mesh, a camera and a pose in a folder.
+fn small_folder(name: &str) -> PathBuf {
+    let folder = folder(name);
+    for file in [flat_photo("photo.png", 640, 480), box_mesh("box.obj")] {
+        std::fs::write(folder.join(file.name), &file.bytes).unwrap();
+    }
+    let truth = format!("{CAMERA_JSON}\nbox <-> photo\n1 0 0 5\n0 1 0 6\n0 0 1 700\n0 0 0 1\n");
+    std::fs::write(folder.join("truth.txt"), truth).unwrap();
+    folder
+}
+
+#[test]
+fn inspect_says_what_files_are() {
+    let folder = small_folder("inspect");
+    let paths = ["photo.png", "box.obj", "truth.txt"].map(|name| folder.join(name).display().to_string());
+    let output = pinpose(&["inspect", &paths[0], &paths[1], &paths[2], "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found[0]["content"]["width"], 640);
+    assert_eq!(found[1]["content"]["triangles"], 12);
+    assert_eq!(found[1]["content"]["size_mm"], serde_json::json!([80.0, 60.0, 40.0]));
+    assert_eq!(found[2]["content"]["poses"], 1);
+}
+
+#[test]
+fn bad_input_is_one_line_per_problem_and_exit_code_1() {
+    let folder = folder("bad");
+    std::fs::write(folder.join("broken.png"), b"\x89PNG\r\n\x1a\n").unwrap();
+    std::fs::write(folder.join("empty.ply"), b"").unwrap();
+    let paths = ["broken.png", "empty.ply"].map(|name| folder.join(name).display().to_string());
+    let output = pinpose(&["inspect", &paths[0], &paths[1]]);
+    assert_eq!(output.status.code(), Some(1));
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(stderr.lines().count(), 2, "{stderr}");
+    assert!(stderr.contains("broken.png") && stderr.contains("empty.ply: the file is empty"), "{stderr}");
+    assert_eq!(pinpose(&["inspect"]).status.code(), Some(2));
+    assert_eq!(pinpose(&["frobnicate"]).status.code(), Some(2));
+    assert_eq!(pinpose(&["convert", "a", "b.docx"]).status.code(), Some(2));
+}
+
+#[test]
+fn convert_goes_through_a_workspace_without_loss() {
+    let folder = small_folder("convert");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let run = |arguments: &[&str]| {
+        let output = pinpose(arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    run(&["convert", &path("photo.png"), &path("box.obj"), &path("truth.txt"), &path("scene.zip")]);
+    run(&["convert", &path("scene.zip"), &path("poses.json")]);
+    run(&["convert", &path("photo.png"), &path("box.obj"), &path("poses.json"), &path("again.json")]);
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let poses = |text: &str| serde_json::from_str::<Value>(text).unwrap()["photos"][0]["poses"].clone();
+    assert_eq!(poses(&read("poses.json")), poses(&read("again.json")));
+    assert_eq!(poses(&read("poses.json"))[0]["t"], serde_json::json!([5.0, 6.0, 700.0]));
+}
+
+#[test]
+fn render_draws_masks_and_overlays_of_linemod() {
+    let (Some(linemod), Some(_)) = (data_folder("linemod10"), crate::support::gpu()) else { return };
+    let out = folder("render");
+    let path = |name: &str| linemod.join(name).display().to_string();
+    let files = [path("000019.png"), path("obj_000001.ply"), path("groud_truth.txt")];
+    for kind in ["overlay", "mask", "depth"] {
+        let output = pinpose(&["render", &files[0], &files[1], &files[2], "--out", &out.display().to_string(), "--kind", kind]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let overlay = image::open(out.join("000019_overlay.png")).unwrap().into_rgb8();
+    let photo = image::open(linemod.join("000019.png")).unwrap().into_rgb8();
+    assert_eq!(overlay.dimensions(), (640, 480));
+    // Away from the object the photo is not touched by a single bit.
+    assert_eq!(overlay.get_pixel(400, 400), photo.get_pixel(400, 400));
+    assert_ne!(overlay.get_pixel(220, 180), photo.get_pixel(220, 180));
+    let mask = image::open(out.join("000019_obj_000001_mask.png")).unwrap().into_luma8();
+    let depth = image::open(out.join("000019_depth.png")).unwrap().into_luma16();
+    assert_eq!(mask.get_pixel(220, 180).0, [255]);
+    // The object is about a metre away; depth is in tenths of a millimetre.
+    assert!((9_000..11_000).contains(&depth.get_pixel(220, 180).0[0]));
+    assert_eq!(depth.get_pixel(400, 400).0, [0]);
+}

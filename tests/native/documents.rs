@@ -1,0 +1,133 @@
+//! Our own files: bit for bit there and back, as the schema says, and refused in words where they are not.
+
+use glam::DVec3;
+use pinpose::formats::{
+    DOCUMENT_SCHEMA, Keep, PosesAs, classify, parse_text_or_archive, read_document, read_workspace, write_document,
+    write_workspace,
+};
+use pinpose::math::Pose;
+use pinpose::scene::PoseSource;
+use pinpose::session::{Command, Opening, Session};
+use proptest::prelude::*;
+
+use crate::support::{NOW_MS, drop_files, linemod_session, small_session, text_file};
+
+fn with_pose(pose: Pose) -> Session {
+    let mut session = small_session();
+    let (photo, object, _) = session.selected_annotation().unwrap();
+    let command = Command::SetPose { photo, object, camera_from_object: pose, source: PoseSource::Manual };
+    session.apply(command, NOW_MS).unwrap();
+    session
+}
+
+fn only_pose(session: &Session) -> Pose {
+    session.scene().annotations.values().next().unwrap().camera_from_object
+}
+
+proptest! {
+    // Each case decodes a PNG; enough of them still run to meet every kind of rounding.
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn poses_survive_export_import_export_bit_for_bit(w in [-3.0..3.0, -3.0..3.0, -3.0..3.0], t in [-900.0..900.0, -900.0..900.0, 100.0..4000.0_f64]) {
+        let pose = Pose::exp(DVec3::from_array(w), DVec3::ZERO);
+        let pose = Pose { translation_mm: DVec3::from_array(t), ..pose };
+        let exported = write_document(&with_pose(pose).document(Keep::Annotated));
+
+        let mut again = small_session();
+        drop_files(&mut again, &[text_file("poses.json", &exported)], Some(PosesAs::Annotations));
+        prop_assert_eq!(only_pose(&again), pose);
+        prop_assert_eq!(write_document(&again.document(Keep::Annotated)), exported);
+    }
+}
+
+#[test]
+fn linemod_survives_a_workspace() {
+    let Some(session) = linemod_session() else { return };
+    let document = session.document(Keep::Everything);
+    let zip = write_workspace(&document, session.scene()).unwrap();
+    println!("workspace of ten photos and ten meshes: {} bytes", zip.len());
+    let workspace = read_workspace(&zip).unwrap();
+    assert_eq!(workspace.files.len(), 20);
+    let batch = crate::support::batch_of(&workspace.files, None);
+    let mut opened = Session::default();
+    let opening = Opening { document: workspace.document, photos: batch.photos, meshes: batch.meshes, restored: true };
+    opened.apply(Command::Open(Box::new(opening)), NOW_MS).unwrap();
+    assert_eq!(write_document(&opened.document(Keep::Everything)), write_document(&document));
+    assert!(opened.undo_label().is_none());
+}
+
+#[test]
+fn exports_are_as_the_schema_says() {
+    let schema: serde_json::Value = serde_json::from_str(DOCUMENT_SCHEMA).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let mut sessions = vec![small_session(), with_pose(Pose::from_translation(DVec3::new(1.0, 2.0, 800.0)))];
+    sessions.extend(linemod_session());
+    for session in sessions {
+        for keep in [Keep::Annotated, Keep::Everything] {
+            let text = write_document(&session.document(keep));
+            let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+            let errors: Vec<String> = validator.iter_errors(&value).map(|error| error.to_string()).collect();
+            assert!(errors.is_empty(), "{errors:?}");
+        }
+    }
+    let mut wrong: serde_json::Value = serde_json::from_str(&write_document(&small_session().document(Keep::Everything))).unwrap();
+    wrong["photos"][0]["sha256"] = "short".into();
+    assert!(!validator.is_valid(&wrong), "the schema takes anything");
+}
+
+#[test]
+fn an_untouched_pose_is_not_exported_as_an_annotation() {
+    let session = small_session();
+    assert_eq!(session.document(Keep::Annotated).pose_count(), 0);
+    assert_eq!(session.document(Keep::Everything).pose_count(), 1);
+}
+
+#[test]
+fn poses_without_their_files_wait_for_them() {
+    let exported = write_document(&with_pose(Pose::from_translation(DVec3::new(1.0, 2.0, 800.0))).document(Keep::Annotated));
+    let mut session = Session::default();
+    drop_files(&mut session, &[text_file("poses.json", &exported)], Some(PosesAs::Annotations));
+    let missing: Vec<String> = session.missing_files().flat_map(|(_, files)| files.to_vec()).collect();
+    assert_eq!(missing, ["photo.png", "box.obj"]);
+    let files = [crate::support::flat_photo("renamed.png", 640, 480), crate::support::box_mesh("renamed.obj")];
+    drop_files(&mut session, &files, None);
+    assert_eq!(only_pose(&session).translation_mm, DVec3::new(1.0, 2.0, 800.0));
+    assert_eq!(session.missing_files().count(), 0);
+    assert_eq!(session.photo().unwrap().camera.fx, 520.5);
+}
+
+#[test]
+fn bad_documents_are_refused_in_words() {
+    let good = write_document(&with_pose(Pose::from_translation(DVec3::Z * 500.0)).document(Keep::Annotated));
+    let message = |text: &str| {
+        let file = text_file("poses.json", text);
+        parse_text_or_archive(&file, classify(&file.name, &file.bytes)).unwrap_err().to_string()
+    };
+    assert!(message(&good.replace("\"version\": 1", "\"version\": 7")).contains("version 7"));
+    assert!(message(&good.replace("\"format\": \"pinpose\"", "\"format\": \"other\"")).contains("\"other\""));
+    assert!(message(&good[..good.len() / 2]).contains("line"));
+    assert!(message(&good.replacen("500.0", "501.0", 1)).contains("which one is right"));
+    assert!(message("").contains("line 1"));
+    let deep = "[".repeat(100_000);
+    assert!(message(&format!("{{\"format\": {deep}")).contains("recursion"));
+}
+
+#[test]
+fn every_truncation_and_many_flips_of_a_workspace_are_errors_or_scenes() {
+    let session = with_pose(Pose::from_translation(DVec3::Z * 500.0));
+    let zip = write_workspace(&session.document(Keep::Everything), session.scene()).unwrap();
+    for length in (0..zip.len()).step_by(7) {
+        assert!(read_workspace(&zip[..length]).is_err(), "{length} of {} bytes", zip.len());
+    }
+    let mut damaged = zip.clone();
+    for position in 0..zip.len() {
+        damaged[position] ^= 0x55;
+        // An error or a scene; what must not happen is a panic.
+        let _ = read_workspace(&damaged);
+        damaged[position] = zip[position];
+    }
+    let text = write_document(&session.document(Keep::Everything));
+    for length in 0..text.len() {
+        assert!(read_document(&text.as_bytes()[..length]).is_err());
+    }
+}

@@ -1,0 +1,16 @@
+//! Native tests: one binary, a module per question.
+
+mod cli;
+mod documents;
+mod gestures;
+mod gpu_and_cpu;
+mod images_corpus;
+mod layers;
+mod linemod;
+mod mesh_corpus;
+mod panels;
+mod scripts;
+mod shaders;
+mod support;
+
+use support::data_folder;

@@ -1,0 +1,216 @@
+//! Sessions as scripts: what a user does, in commands, and what the scene is after it.
+
+use glam::DVec3;
+use pinpose::formats::PosesAs;
+use pinpose::math::{Intrinsics, Pose};
+use pinpose::scene::{AnnotationState, CameraOrigin, PoseSource};
+use pinpose::session::{Answer, COMMANDS, Command, CommandId, Effect, Question, Session};
+
+use crate::support::{CAMERA_JSON, NOW_MS, box_mesh, drop_files, flat_photo, small_session, text_file};
+
+fn run(session: &mut Session, command: Command) -> Vec<Effect> {
+    session.apply(command, NOW_MS).unwrap()
+}
+
+fn shown_pose(session: &Session) -> Pose {
+    session.selected_annotation().unwrap().2.camera_from_object
+}
+
+fn drag(session: &mut Session, offset: DVec3) {
+    let (photo, object, annotation) = session.selected_annotation().unwrap();
+    let start = annotation.camera_from_object;
+    run(session, Command::BeginGesture("Move"));
+    for step in 1..=3 {
+        let camera_from_object = start.translated(offset * (f64::from(step) / 3.0));
+        run(session, Command::Drag { photo, object, camera_from_object });
+    }
+    run(session, Command::EndGesture);
+}
+
+#[test]
+fn a_new_object_covers_a_third_of_the_photo() {
+    let session = small_session();
+    let (_, _, annotation) = session.selected_annotation().unwrap();
+    assert_eq!(annotation.state, AnnotationState::Untouched);
+    let photo = session.photo().unwrap();
+    let pose = annotation.camera_from_object;
+    assert_eq!(photo.camera.project(pose.translation_mm).unwrap(), glam::DVec2::new(301.75, 222.5));
+    // The silhouette of the bounding sphere: f·r/√(d² − r²) is a sixth of the height.
+    let radius = 40.0_f64.hypot(30.0).hypot(20.0);
+    let distance = pose.translation_mm.length();
+    let seen = photo.camera.fy * radius / (distance * distance - radius * radius).sqrt();
+    assert!((seen - 80.0).abs() < 1e-3, "{seen}");
+}
+
+#[test]
+fn files_may_come_in_any_order() {
+    let files = [flat_photo("photo.png", 640, 480), box_mesh("box.obj"), text_file("camera.json", CAMERA_JSON)];
+    for order in [[0, 1, 2], [2, 1, 0], [1, 0, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1]] {
+        let mut session = Session::default();
+        for index in order {
+            drop_files(&mut session, &files[index..=index], None);
+        }
+        assert_eq!(session.photo().unwrap().camera.fy, 533.25, "{order:?}");
+        assert_eq!(shown_pose(&session), shown_pose(&small_session()), "{order:?}");
+    }
+}
+
+#[test]
+fn a_gesture_is_one_undo_step() {
+    let mut session = small_session();
+    let start = shown_pose(&session);
+    drag(&mut session, DVec3::new(10.0, 0.0, 0.0));
+    drag(&mut session, DVec3::new(0.0, 5.0, 0.0));
+    let end = shown_pose(&session);
+    run(&mut session, Command::Run(CommandId::Undo));
+    run(&mut session, Command::Run(CommandId::Undo));
+    assert_eq!(shown_pose(&session), start);
+    assert_eq!(session.selected_annotation().unwrap().2.state, AnnotationState::Untouched);
+    run(&mut session, Command::Run(CommandId::Redo));
+    run(&mut session, Command::Run(CommandId::Redo));
+    assert_eq!(shown_pose(&session), end);
+    assert!(session.unavailable(CommandId::Redo).is_some());
+}
+
+#[test]
+fn cancelling_a_gesture_leaves_no_trace() {
+    let mut session = small_session();
+    let before = session.scene().clone();
+    let (photo, object, _) = session.selected_annotation().unwrap();
+    run(&mut session, Command::BeginGesture("Move"));
+    run(&mut session, Command::Drag { photo, object, camera_from_object: Pose::from_translation(DVec3::Z * 400.0) });
+    run(&mut session, Command::CancelGesture);
+    assert_eq!(*session.scene(), before);
+    assert_eq!(session.undo_label(), Some("Add files"));
+}
+
+#[test]
+fn nudges_close_in_time_are_one_step() {
+    let mut session = small_session();
+    let (photo, object, _) = session.selected_annotation().unwrap();
+    let start = shown_pose(&session);
+    let mut nudge = |time_ms: f64| {
+        let camera_from_object = shown_pose(&session).translated(DVec3::Z);
+        let command = Command::Nudge { photo, object, camera_from_object, label: "Change depth" };
+        session.apply(command, NOW_MS + time_ms).unwrap();
+    };
+    [0.0, 300.0, 600.0, 1200.0].into_iter().for_each(&mut nudge);
+    run(&mut session, Command::Run(CommandId::Undo));
+    assert_eq!(shown_pose(&session), start.translated(DVec3::Z * 3.0));
+    run(&mut session, Command::Run(CommandId::Undo));
+    assert_eq!(shown_pose(&session), start);
+}
+
+#[test]
+fn a_locked_object_does_not_move() {
+    let mut session = small_session();
+    let (photo, object, _) = session.selected_annotation().unwrap();
+    run(&mut session, Command::SetObjectLocked(object, true));
+    let moved = Pose::from_translation(DVec3::Z * 400.0);
+    let drag = Command::Drag { photo, object, camera_from_object: moved };
+    assert!(session.apply(drag, NOW_MS).unwrap_err().to_string().contains("locked"));
+    let set = Command::SetPose { photo, object, camera_from_object: moved, source: PoseSource::Manual };
+    assert!(session.apply(set, NOW_MS).is_err());
+}
+
+#[test]
+fn changing_the_camera_marks_poses_and_moves_untouched_ones() {
+    let mut session = small_session();
+    let photo = session.photo().unwrap().id;
+    let untouched = shown_pose(&session);
+    let camera = Intrinsics::pinhole(700.0, 710.0, 320.0, 240.0, 640, 480);
+    run(&mut session, Command::SetCamera { photo, camera, origin: CameraOrigin::Typed });
+    assert_ne!(shown_pose(&session), untouched);
+    drag(&mut session, DVec3::X);
+    let posed = shown_pose(&session);
+    let camera = Intrinsics::pinhole(600.0, 610.0, 320.0, 240.0, 640, 480);
+    run(&mut session, Command::SetCamera { photo, camera, origin: CameraOrigin::Typed });
+    let (_, _, annotation) = session.selected_annotation().unwrap();
+    assert_eq!(annotation.camera_from_object, posed);
+    assert!(annotation.camera_changed);
+    let zero = Intrinsics::pinhole(0.0, 610.0, 320.0, 240.0, 640, 480);
+    let refused = session.apply(Command::SetCamera { photo, camera: zero, origin: CameraOrigin::Typed }, NOW_MS);
+    assert!(refused.unwrap_err().to_string().contains("focal length"));
+}
+
+#[test]
+fn a_camera_of_another_size_is_asked_about() {
+    let mut session = small_session();
+    let half = r#"{"fx": 260.25, "fy": 266.625, "cx": 150.625, "cy": 111, "width": 320, "height": 240}"#;
+    drop_files(&mut session, &[text_file("half.json", half)], None);
+    assert!(matches!(session.question(), Some(Question::CameraSize { .. })));
+    assert_eq!(session.photo().unwrap().camera.fx, 520.5, "nothing changes before the answer");
+    run(&mut session, Command::Answer(Answer::ScaleCamera));
+    let camera = session.photo().unwrap().camera;
+    // c′ = (c + ½)·s − ½
+    assert_eq!((camera.fx, camera.cx, camera.width), (520.5, 301.75, 640));
+    assert!(session.question().is_none());
+}
+
+#[test]
+fn poses_are_asked_about_and_can_be_a_reference() {
+    let mut session = small_session();
+    let truth = format!("{CAMERA_JSON}\nbox <-> photo\n1 0 0 5\n0 1 0 6\n0 0 1 700\n0 0 0 1\n");
+    drop_files(&mut session, &[text_file("truth.txt", &truth)], None);
+    assert!(matches!(session.question(), Some(Question::PosesAs(_))));
+    let before = shown_pose(&session);
+    run(&mut session, Command::Answer(Answer::UsePosesAs(PosesAs::Reference)));
+    assert_eq!(shown_pose(&session), before, "a reference is not mixed with annotations");
+    let reference = &session.scene().references[0];
+    assert_eq!((reference.name.as_str(), reference.poses.len()), ("truth", 1));
+    run(&mut session, Command::Run(CommandId::Undo));
+    assert!(session.scene().references.is_empty());
+}
+
+#[test]
+fn a_session_replays_exactly() {
+    let play = || {
+        let mut session = small_session();
+        drag(&mut session, DVec3::new(3.0, 4.0, 5.0));
+        run(&mut session, Command::Run(CommandId::Undo));
+        run(&mut session, Command::Run(CommandId::Redo));
+        pinpose::formats::write_document(&session.document(pinpose::formats::Keep::Everything))
+    };
+    assert_eq!(play(), play());
+}
+
+/// Fails on a command that nobody exercises: each has to do something that can be seen, or say why it cannot.
+#[test]
+fn every_command_of_the_table_does_something() {
+    for info in COMMANDS {
+        let mut empty = Session::default();
+        if let Err(error) = empty.apply(Command::Run(info.id), NOW_MS) {
+            assert!(error.to_string().contains("not possible now"), "{}: {error}", info.name);
+        }
+        let mut session = small_session();
+        drop_files(&mut session, &[flat_photo("second.png", 320, 240)], None);
+        let first = session.scene().photos[0].id;
+        run(&mut session, Command::ShowPhoto(first));
+        drag(&mut session, DVec3::X);
+        match info.id {
+            CommandId::Redo => drop(run(&mut session, Command::Run(CommandId::Undo))),
+            CommandId::PreviousPhoto => drop(run(&mut session, Command::Run(CommandId::NextPhoto))),
+            CommandId::MoveTool => drop(run(&mut session, Command::Run(CommandId::RotateTool))),
+            CommandId::Cancel => {
+                run(&mut session, Command::BeginGesture("Move"));
+            }
+            _ => {}
+        }
+        let before = format!("{session:?}");
+        let effects = run(&mut session, Command::Run(info.id));
+        assert!(!effects.is_empty() || format!("{session:?}") != before, "{} does nothing", info.name);
+    }
+}
+
+#[test]
+fn downloads_hold_what_they_say() {
+    let mut session = small_session();
+    drag(&mut session, DVec3::X);
+    let effects = run(&mut session, Command::Run(CommandId::SavePoses));
+    let Some(Effect::Download { file_name, bytes }) = effects.first() else { panic!("{effects:?}") };
+    assert_eq!(file_name, "photo-poses.json");
+    assert_eq!(pinpose::formats::read_document(bytes).unwrap().pose_count(), 1);
+    let effects = run(&mut session, Command::Run(CommandId::SaveWorkspace));
+    let Some(Effect::Download { file_name, .. }) = effects.first() else { panic!("{effects:?}") };
+    assert_eq!(file_name, "photo-workspace.zip");
+}
