@@ -18,7 +18,8 @@ pub async fn start(canvas: HtmlCanvasElement, options: JsValue) -> Result<(), Js
     let renderer = option("renderer").as_string().unwrap_or_default();
     let runner = eframe::WebRunner::new();
     platform::install_panic_hook();
-    let web_options = eframe::WebOptions { wgpu_options: graphics(&renderer), ..eframe::WebOptions::default() };
+    let web_options =
+        eframe::WebOptions { wgpu_options: graphics(&renderer), ..eframe::WebOptions::default() };
     let (sender, receiver) = futures_channel::oneshot::channel();
     let bare = option("bare").is_truthy();
     let create: eframe::AppCreator<'static> = Box::new(move |creation| {
@@ -35,7 +36,8 @@ pub async fn start(canvas: HtmlCanvasElement, options: JsValue) -> Result<(), Js
         let start = Start {
             calls,
             storage: platform::default_storage(),
-            restore: platform::page_parameter("empty").is_none() && platform::page_parameter("example").is_none(),
+            restore: platform::page_parameter("empty").is_none()
+                && platform::page_parameter("example").is_none(),
             load_example: platform::page_parameter("example").is_some(),
         };
         Ok(Box::new(PinPose::new(creation, start)))

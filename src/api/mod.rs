@@ -18,13 +18,26 @@ pub fn install(calls: &PageCalls) -> Result<(), JsValue> {
     let set = |name: &str, value: &JsValue| js_sys::Reflect::set(&api, &name.into(), value).map(|_| ());
     set("version", &crate::platform::page_version().into())?;
     set("ready", &promise(calls.clone(), Ok(PageCall::Ready)))?;
-    let method = |name: &str, read: fn(&js_sys::Array) -> CallResult| set(name, &promising(calls.clone(), read));
+    let method =
+        |name: &str, read: fn(&js_sys::Array) -> CallResult| set(name, &promising(calls.clone(), read));
     method("state", |_| Ok(PageCall::State))?;
     method("setPose", arguments::set_pose)?;
     method("command", arguments::command)?;
-    method("pageFromImage", |args| Ok(PageCall::PageFromImage { u: arguments::number(args, 0, "u")?, v: arguments::number(args, 1, "v")? }))?;
-    method("imageFromPage", |args| Ok(PageCall::ImageFromPage { x: arguments::number(args, 0, "x")?, y: arguments::number(args, 1, "y")? }))?;
-    method("pick", |args| Ok(PageCall::Pick { x: arguments::number(args, 0, "x")?, y: arguments::number(args, 1, "y")? }))?;
+    method("pageFromImage", |args| {
+        Ok(PageCall::PageFromImage {
+            u: arguments::number(args, 0, "u")?,
+            v: arguments::number(args, 1, "v")?,
+        })
+    })?;
+    method("imageFromPage", |args| {
+        Ok(PageCall::ImageFromPage {
+            x: arguments::number(args, 0, "x")?,
+            y: arguments::number(args, 1, "y")?,
+        })
+    })?;
+    method("pick", |args| {
+        Ok(PageCall::Pick { x: arguments::number(args, 0, "x")?, y: arguments::number(args, 1, "y")? })
+    })?;
     method("widgets", |_| Ok(PageCall::Widgets))?;
     method("render", arguments::render)?;
     method("perf", |_| Ok(PageCall::Perf))?;

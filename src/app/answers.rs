@@ -56,7 +56,9 @@ impl PinPose {
         match call {
             PageCall::Ready => Ok(PageAnswer::Nothing),
             PageCall::State => Ok(PageAnswer::State(self.page_state())),
-            PageCall::SetPose { photo, object, camera_from_object } => self.call_set_pose(photo, object, &camera_from_object),
+            PageCall::SetPose { photo, object, camera_from_object } => {
+                self.call_set_pose(photo, object, &camera_from_object)
+            }
             PageCall::Command { name, value } => self.call_command(&name, value),
             PageCall::PageFromImage { u, v } => self.page_from_image(DVec2::new(u, v)),
             PageCall::ImageFromPage { x, y } => {
@@ -100,10 +102,14 @@ impl PinPose {
             ("show_photo", Some(PageValue::Number(id))) => Command::ShowPhoto(PhotoId(id as u32)),
             ("select", Some(PageValue::Number(id))) => Command::Select(Some(ObjectId(id as u32))),
             ("select", None) => Command::Select(None),
-            ("set_overlay_opacity", Some(PageValue::Number(opacity))) => Command::SetOverlayOpacity(opacity as f32),
+            ("set_overlay_opacity", Some(PageValue::Number(opacity))) => {
+                Command::SetOverlayOpacity(opacity as f32)
+            }
             _ => {
                 let info = COMMANDS.iter().find(|info| info.name == name);
-                Command::Run(info.ok_or_else(|| format!("there is no command \"{name}\" with this argument"))?.id)
+                Command::Run(
+                    info.ok_or_else(|| format!("there is no command \"{name}\" with this argument"))?.id,
+                )
             }
         };
         self.try_apply(command)?;
@@ -202,8 +208,12 @@ impl PinPose {
             let names = ExportKind::ALL.map(|(_, name)| name).join(", ");
             format!("kind is \"{kind_name}\", one of {names} expected")
         })?;
-        let photo = photo.map(PhotoId).or(self.session.photo().map(|photo| photo.id)).ok_or("no photo is open")?;
-        self.session.scene().photo(photo).ok_or_else(|| format!("there is no photo with the id {}", photo.0))?;
+        let photo =
+            photo.map(PhotoId).or(self.session.photo().map(|photo| photo.id)).ok_or("no photo is open")?;
+        self.session
+            .scene()
+            .photo(photo)
+            .ok_or_else(|| format!("there is no photo with the id {}", photo.0))?;
         let object = object.map(ObjectId).or(self.session.selected().filter(|_| kind.is_of_one_object()));
         if kind.is_of_one_object() {
             let object = object.ok_or("an object is needed")?;
@@ -220,7 +230,11 @@ impl PinPose {
             match kind {
                 ExportKind::Mask | ExportKind::VisibleMask | ExportKind::Depth => {
                     let png = raster_png(scene, photo, kind, object);
-                    reply.send(png.map(PageAnswer::Bytes).ok_or_else(|| "the picture cannot be made".to_owned())).ok();
+                    reply
+                        .send(
+                            png.map(PageAnswer::Bytes).ok_or_else(|| "the picture cannot be made".to_owned()),
+                        )
+                        .ok();
                 }
                 ExportKind::Overlay if pixels.is_none() => {
                     if let Some(photo) = scene.photo(photo).map(|photo| photo.asset.clone())
@@ -259,7 +273,8 @@ impl PinPose {
                 continue;
             };
             let png = pixels.map_err(|error| error.to_string()).and_then(|pixels| {
-                let png = if kind == ExportKind::Silhouette { silhouette_png(&pixels) } else { png_rgba(&pixels) };
+                let png =
+                    if kind == ExportKind::Silhouette { silhouette_png(&pixels) } else { png_rgba(&pixels) };
                 png.map(PageAnswer::Bytes).ok_or_else(|| "the picture cannot be written as PNG".to_owned())
             });
             reply.send(png).ok();

@@ -127,11 +127,22 @@ fn saved(session: &Session) -> Saved {
     let scene = session.scene();
     let photos = scene.photos.iter().map(|photo| {
         let asset = &photo.asset;
-        SavedAsset { key: asset.sha256.to_string(), file_name: asset.file_name.clone(), bytes: asset.bytes.clone() }
+        SavedAsset {
+            key: asset.sha256.to_string(),
+            file_name: asset.file_name.clone(),
+            bytes: asset.bytes.clone(),
+        }
     });
     let meshes = scene.objects.iter().map(|object| {
         let asset = &object.mesh;
-        SavedAsset { key: asset.sha256.to_string(), file_name: asset.file_name.clone(), bytes: asset.bytes.clone() }
+        SavedAsset {
+            key: asset.sha256.to_string(),
+            file_name: asset.file_name.clone(),
+            bytes: asset.bytes.clone(),
+        }
     });
-    Saved { json: write_document(&session.document(Keep::Everything)), assets: photos.chain(meshes).collect() }
+    Saved {
+        json: write_document(&session.document(Keep::Everything)),
+        assets: photos.chain(meshes).collect(),
+    }
 }

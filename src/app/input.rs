@@ -35,7 +35,9 @@ impl PinPose {
             commands.into_iter().for_each(|command| self.apply(command));
         }
         let position = ctx.input(|input| input.pointer.latest_pos());
-        self.pointer = position.filter(|position| is_over(ctx, &place, *position)).map(|position| to_viewport(&place, position));
+        self.pointer = position
+            .filter(|position| is_over(ctx, &place, *position))
+            .map(|position| to_viewport(&place, position));
     }
 
     /// Tells the view how large viewport and photo are.

@@ -103,7 +103,8 @@ impl Loading {
 
     /// Decodes a photo of the scene that is to be shown.
     pub fn decode(&mut self, photo: &PhotoAsset) {
-        self.jobs.submit(JobKind::Photo, NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() });
+        self.jobs
+            .submit(JobKind::Photo, NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() });
     }
 
     fn start(&mut self, arrival: Arrival) {
@@ -111,7 +112,9 @@ impl Loading {
         let mut load = self.new_load(batch, arrival.reply);
         for file in arrival.files {
             match file {
-                Ok(file) => self.take_file(&mut load, NamedFile { name: file.name, bytes: Arc::from(file.bytes) }),
+                Ok(file) => {
+                    self.take_file(&mut load, NamedFile { name: file.name, bytes: Arc::from(file.bytes) });
+                }
                 Err(problem) => load.problems.push(problem),
             }
         }
@@ -120,7 +123,8 @@ impl Loading {
 
     /// Brings back a saved scene.
     fn start_saved(&mut self, saved: Saved) -> Result<(), String> {
-        let document = crate::formats::read_document(saved.json.as_bytes()).map_err(|error| error.to_string())?;
+        let document =
+            crate::formats::read_document(saved.json.as_bytes()).map_err(|error| error.to_string())?;
         let mut load = self.new_load(Batch::default(), None);
         load.opening = Some((document, Origin::Storage));
         for asset in saved.assets {
@@ -199,7 +203,8 @@ impl Loading {
                 load.take_done(&file, done);
             }
         }
-        let (complete, waiting) = std::mem::take(&mut self.loads).into_iter().partition(|load| load.jobs_left == 0);
+        let (complete, waiting) =
+            std::mem::take(&mut self.loads).into_iter().partition(|load| load.jobs_left == 0);
         self.loads = waiting;
         (decoded, complete)
     }

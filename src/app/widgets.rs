@@ -46,7 +46,8 @@ impl WidgetWatcher {
 
 fn widget(id: NodeId, node: &egui::accesskit::Node) -> Option<Widget> {
     let bounds = node.bounds()?;
-    let value = node.value().map(str::to_owned).or_else(|| node.numeric_value().map(|value| value.to_string()));
+    let value =
+        node.value().map(str::to_owned).or_else(|| node.numeric_value().map(|value| value.to_string()));
     let toggled = node.toggled().map(|toggled| format!("{toggled:?}").to_lowercase());
     let value = value.or(toggled).unwrap_or_default();
     // egui puts a label's text into its value.

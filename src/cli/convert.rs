@@ -18,7 +18,10 @@ pub fn run(mut parser: lexopt::Parser) -> Outcome {
     };
     let extension = out.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     if !matches!(extension, "json" | "zip") {
-        return Err(Failure::Usage(format!("{}: the output is .json (poses) or .zip (workspace)", out.display())));
+        return Err(Failure::Usage(format!(
+            "{}: the output is .json (poses) or .zip (workspace)",
+            out.display()
+        )));
     }
     let session = open::open_session(&paths)?;
     let bytes = match extension {

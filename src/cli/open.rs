@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Failure;
-use crate::formats::{FileKind, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive, read_mesh, read_photo};
+use crate::formats::{
+    FileKind, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive, read_mesh, read_photo,
+};
 use crate::session::{Batch, Command, Effect, Opening, Session, Severity};
 
 /// Reads files, and the files directly in folders. What is said on the way goes to stderr.
@@ -17,7 +19,9 @@ pub fn read_files(paths: &[PathBuf]) -> Result<Vec<NamedFile>, Failure> {
             Ok(found) => {
                 for path in found {
                     match fs::read(&path) {
-                        Ok(bytes) => files.push(NamedFile { name: file_name(&path), bytes: Arc::from(bytes) }),
+                        Ok(bytes) => {
+                            files.push(NamedFile { name: file_name(&path), bytes: Arc::from(bytes) });
+                        }
                         Err(error) => problems.push(format!("{}: {error}", path.display())),
                     }
                 }
@@ -33,7 +37,8 @@ fn expand(path: &Path) -> std::io::Result<Vec<PathBuf>> {
         return Ok(vec![path.to_owned()]);
     }
     let entries: std::io::Result<Vec<_>> = fs::read_dir(path)?.collect();
-    let mut files: Vec<PathBuf> = entries?.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
+    let mut files: Vec<PathBuf> =
+        entries?.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
     files.sort();
     Ok(files)
 }

@@ -22,7 +22,8 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
     let session = open::open_session(&options.paths)?;
     let scene = session.scene();
     let problem = |text: String| Failure::Input(vec![text]);
-    std::fs::create_dir_all(&options.out).map_err(|error| problem(format!("{}: {error}", options.out.display())))?;
+    std::fs::create_dir_all(&options.out)
+        .map_err(|error| problem(format!("{}: {error}", options.out.display())))?;
 
     let mut renderer = None;
     let mut written = Vec::new();
@@ -41,7 +42,8 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
                 }
                 kind => raster_png(scene, photo.id, kind, object),
             };
-            let png = png.ok_or_else(|| problem(format!("{}: the picture cannot be made", photo.asset.file_name)))?;
+            let png =
+                png.ok_or_else(|| problem(format!("{}: the picture cannot be made", photo.asset.file_name)))?;
             let name = picture_name(scene, photo, options.kind, object);
             let path = options.out.join(&name);
             std::fs::write(&path, png).map_err(|error| problem(format!("{}: {error}", path.display())))?;
@@ -96,8 +98,11 @@ fn draw(
     kind: ExportKind,
     object: Option<ObjectId>,
 ) -> Result<Option<Vec<u8>>, String> {
-    let decoded = decode(&photo.asset.bytes).map_err(|error| format!("{}: {error}", photo.asset.file_name))?;
-    let Some(picture) = export_picture(scene, photo.id, Some(Arc::new(decoded.pixels)), object) else { return Ok(None) };
+    let decoded =
+        decode(&photo.asset.bytes).map_err(|error| format!("{}: {error}", photo.asset.file_name))?;
+    let Some(picture) = export_picture(scene, photo.id, Some(Arc::new(decoded.pixels)), object) else {
+        return Ok(None);
+    };
     let layer = if kind == ExportKind::Silhouette { Layer::Ids } else { Layer::Picture };
     let pending = renderer.draw_and_read(&picture, [photo.camera.width, photo.camera.height], layer);
     let pixels = pending.wait(renderer.gpu()).map_err(|error| error.to_string())?;
@@ -105,7 +110,8 @@ fn draw(
 }
 
 fn picture_name(scene: &Scene, photo: &Photo, kind: ExportKind, object: Option<ObjectId>) -> String {
-    let kind = ExportKind::ALL.iter().find(|(candidate, _)| *candidate == kind).map_or("picture", |(_, name)| name);
+    let kind =
+        ExportKind::ALL.iter().find(|(candidate, _)| *candidate == kind).map_or("picture", |(_, name)| name);
     let photo = file_stem(&photo.asset.file_name);
     match object.and_then(|id| scene.object(id)) {
         Some(object) => format!("{photo}_{}_{kind}.png", object.name),

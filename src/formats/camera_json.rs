@@ -21,7 +21,8 @@ impl CameraFile {
     /// The camera for a photo of this size, if the file does not name another.
     pub fn intrinsics(&self, photo_width: u32, photo_height: u32) -> Intrinsics {
         let (width, height) = self.size.unwrap_or((photo_width, photo_height));
-        let pinhole = Intrinsics::pinhole(self.k[0][0], self.k[1][1], self.k[0][2], self.k[1][2], width, height);
+        let pinhole =
+            Intrinsics::pinhole(self.k[0][0], self.k[1][1], self.k[0][2], self.k[1][2], width, height);
         Intrinsics { skew: self.k[0][1], distortion: self.distortion, ..pinhole }
     }
 
@@ -51,9 +52,9 @@ pub fn read_camera(file_name: &str, value: &Value) -> Result<CameraFile, FormatE
 
 fn required_number(value: &Value, key: &str) -> Result<f64, FormatError> {
     match value.get(key) {
-        Some(number) => number
-            .as_f64()
-            .ok_or_else(|| FormatError::at(format!("\"{key}\""), format!("a number expected, found {number}"))),
+        Some(number) => number.as_f64().ok_or_else(|| {
+            FormatError::at(format!("\"{key}\""), format!("a number expected, found {number}"))
+        }),
         None => Err(FormatError::at(
             format!("\"{key}\""),
             "missing; a camera needs fx, fy, cx, cy or a matrix K (and a PinPose file \"format\": \"pinpose\")",
@@ -63,7 +64,8 @@ fn required_number(value: &Value, key: &str) -> Result<f64, FormatError> {
 
 fn matrix_rows(key: &str, matrix: &Value) -> Result<[[f64; 3]; 3], FormatError> {
     let flat: Option<Vec<f64>> = matrix.as_array().and_then(|rows| {
-        let nested = rows.iter().flat_map(|row| row.as_array().map_or_else(|| vec![row], |row| row.iter().collect()));
+        let nested =
+            rows.iter().flat_map(|row| row.as_array().map_or_else(|| vec![row], |row| row.iter().collect()));
         nested.map(Value::as_f64).collect()
     });
     match flat.as_deref() {
@@ -76,7 +78,9 @@ fn size(value: &Value) -> Result<Option<(u32, u32)>, FormatError> {
     let whole = |number: &Value| number.as_u64().and_then(|number| u32::try_from(number).ok());
     if let (Some(width), Some(height)) = (value.get("width"), value.get("height")) {
         let both = whole(width).zip(whole(height));
-        return both.map(Some).ok_or_else(|| FormatError::at("\"width\", \"height\"", "whole numbers of pixels expected"));
+        return both
+            .map(Some)
+            .ok_or_else(|| FormatError::at("\"width\", \"height\"", "whole numbers of pixels expected"));
     }
     match value.get("resolution").map(Value::as_array) {
         None => Ok(None),
@@ -108,13 +112,16 @@ mod tests {
 
     #[test]
     fn the_shapes_of_the_field_are_read() {
-        let bop = read(r#"{"cx": 325.2, "cy": 242.0, "fx": 572.4, "fy": 573.5, "width": 640, "height": 480, "depth_scale": 1.0}"#);
+        let bop = read(
+            r#"{"cx": 325.2, "cy": 242.0, "fx": 572.4, "fy": 573.5, "width": 640, "height": 480, "depth_scale": 1.0}"#,
+        );
         let bop = bop.unwrap();
         assert_eq!(bop.k, [[572.4, 0.0, 325.2], [0.0, 573.5, 242.0], [0.0, 0.0, 1.0]]);
         assert_eq!(bop.size, Some((640, 480)));
         let nine = read(r#"{"cam_K": [572.4, 0, 325.2, 0, 573.5, 242.0, 0, 0, 1]}"#).unwrap();
         assert_eq!((nine.k, nine.size), (bop.k, None));
-        let megapose = read(r#"{"K": [[572.4, 0, 325.2], [0, 573.5, 242.0], [0, 0, 1]], "resolution": [480, 640]}"#);
+        let megapose =
+            read(r#"{"K": [[572.4, 0, 325.2], [0, 573.5, 242.0], [0, 0, 1]], "resolution": [480, 640]}"#);
         assert_eq!(megapose.unwrap().size, Some((640, 480)));
         assert_eq!(read(r#"{"fx": 1, "fy": 1, "cx": 0, "cy": 0, "k1": -0.1}"#).unwrap().distortion.k1, -0.1);
     }

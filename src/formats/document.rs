@@ -168,7 +168,10 @@ pub fn read_document(bytes: &[u8]) -> Result<Document, FormatError> {
     }
     let head: Head = serde_json::from_slice(bytes).map_err(FormatError::json)?;
     if head.format != "pinpose" {
-        return Err(FormatError::at("\"format\"", format!("\"pinpose\" expected, found \"{}\"", head.format)));
+        return Err(FormatError::at(
+            "\"format\"",
+            format!("\"pinpose\" expected, found \"{}\"", head.format),
+        ));
     }
     if head.version != VERSION {
         return Err(FormatError::Version { found: head.version, supported: VERSION });

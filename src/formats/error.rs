@@ -21,7 +21,9 @@ pub enum FormatError {
     Json { line: usize, column: usize, reason: String },
     #[error("{place}: {reason}")]
     At { place: String, reason: String },
-    #[error("a PinPose file of version {found}; this page reads up to version {supported}: reload the page to update it")]
+    #[error(
+        "a PinPose file of version {found}; this page reads up to version {supported}: reload the page to update it"
+    )]
     Version { found: u64, supported: u64 },
     #[error("the archive is damaged: {0}")]
     Archive(String),

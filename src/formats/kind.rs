@@ -13,7 +13,8 @@ pub enum FileKind {
 
 /// The content decides; a photo's or mesh's extension makes a damaged file be reported as what it was meant to be.
 pub fn classify(name: &str, bytes: &[u8]) -> FileKind {
-    let extension = name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase()).unwrap_or_default();
+    let extension =
+        name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase()).unwrap_or_default();
     if bytes.starts_with(b"\x89PNG") || bytes.starts_with(&[0xff, 0xd8, 0xff]) {
         return FileKind::Photo;
     }

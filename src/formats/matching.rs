@@ -135,7 +135,8 @@ impl Incoming {
         let mut taken: Vec<ObjectId> = Vec::new();
         let mut find = |incoming: &IncomingObject| {
             let matches = |mesh: &MeshAsset| incoming.key.matches(&mesh.file_name, mesh.sha256);
-            let free = scene.objects.iter().find(|object| matches(&object.mesh) && !taken.contains(&object.id));
+            let free =
+                scene.objects.iter().find(|object| matches(&object.mesh) && !taken.contains(&object.id));
             let id = match free {
                 Some(object) => object.id,
                 None => {
@@ -150,7 +151,8 @@ impl Incoming {
     }
 
     fn list_missing(&self, photos: &[Option<PhotoId>], objects: &[Option<ObjectId>], outcome: &mut Outcome) {
-        let missing_photos = self.photos.iter().zip(photos).filter(|(_, id)| id.is_none()).map(|(photo, _)| &photo.key);
+        let missing_photos =
+            self.photos.iter().zip(photos).filter(|(_, id)| id.is_none()).map(|(photo, _)| &photo.key);
         let missing_objects =
             self.objects.iter().zip(objects).filter(|(_, id)| id.is_none()).map(|(object, _)| &object.key);
         for key in missing_photos.chain(missing_objects) {

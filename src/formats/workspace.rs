@@ -84,7 +84,10 @@ pub fn read_workspace(bytes: &[u8]) -> Result<Workspace, FormatError> {
         }
     }
     let document = document.ok_or_else(|| {
-        FormatError::at(DOCUMENT_NAME, "missing; only zips that were saved as a PinPose workspace can be opened")
+        FormatError::at(
+            DOCUMENT_NAME,
+            "missing; only zips that were saved as a PinPose workspace can be opened",
+        )
     })?;
     Ok(Workspace { document, files })
 }

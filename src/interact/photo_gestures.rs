@@ -129,7 +129,8 @@ impl PhotoGestures {
     }
 
     pub fn is_dragging_object(&self) -> bool {
-        let movable = |press: &Press| matches!(&press.action, Action::Object(drag) if drag.movable && !press.is_click);
+        let movable =
+            |press: &Press| matches!(&press.action, Action::Object(drag) if drag.movable && !press.is_click);
         self.press.as_ref().is_some_and(movable)
     }
 
@@ -154,7 +155,13 @@ impl PhotoGestures {
         commands
     }
 
-    fn scroll(&mut self, notches: f64, event: &PointerEvent, session: &Session, view: &mut PhotoView) -> Vec<Command> {
+    fn scroll(
+        &mut self,
+        notches: f64,
+        event: &PointerEvent,
+        session: &Session,
+        view: &mut PhotoView,
+    ) -> Vec<Command> {
         let depth_px = notches * if event.modifiers.alt { FINE } else { 1.0 };
         let Some(press) = &mut self.press else {
             if event.modifiers.shift {
@@ -186,7 +193,13 @@ impl Press {
 }
 
 impl ObjectDrag {
-    fn advance(&mut self, delta: DVec2, modifiers: Modifiers, session: &Session, view: &PhotoView) -> Option<Command> {
+    fn advance(
+        &mut self,
+        delta: DVec2,
+        modifiers: Modifiers,
+        session: &Session,
+        view: &PhotoView,
+    ) -> Option<Command> {
         if !self.movable {
             return None;
         }
@@ -205,7 +218,14 @@ impl ObjectDrag {
     }
 
     /// The next step of a rotation: valuator, or roll about the view ray with Ctrl.
-    fn turn(&self, session: &Session, view: &PhotoView, camera: &Intrinsics, before: DVec2, roll: bool) -> Option<Pose> {
+    fn turn(
+        &self,
+        session: &Session,
+        view: &PhotoView,
+        camera: &Intrinsics,
+        before: DVec2,
+        roll: bool,
+    ) -> Option<Pose> {
         let object = session.scene().object(self.object)?;
         let sphere = object.mesh.mesh.sphere();
         let pivot = self.grab.start.transform_point(sphere.center);
@@ -252,7 +272,12 @@ fn start_press(session: &Session, view: &PhotoView, position: DVec2, button: But
     Press { button, start: position, last: position, is_click: true, action }
 }
 
-fn start_object_drag(session: &Session, view: &PhotoView, position: DVec2, button: Button) -> Option<ObjectDrag> {
+fn start_object_drag(
+    session: &Session,
+    view: &PhotoView,
+    position: DVec2,
+    button: Button,
+) -> Option<ObjectDrag> {
     let pixel = view.image_from_viewport(position);
     let hit = hit_to_move(session, pixel)?;
     let photo = session.photo()?.id;
@@ -278,7 +303,8 @@ fn hit_to_move(session: &Session, pixel: DVec2) -> Option<Hit> {
 fn finish_press(press: &Press, event: &PointerEvent, session: &Session, view: &PhotoView) -> Option<Command> {
     if press.is_click {
         let selects = press.button == Button::Left && !matches!(press.action, Action::Ended);
-        return selects.then(|| select_at(session, view.image_from_viewport(press.start), event.modifiers.alt))?;
+        return selects
+            .then(|| select_at(session, view.image_from_viewport(press.start), event.modifiers.alt))?;
     }
     let moved = matches!(press.action, Action::Object(ObjectDrag { movable: true, .. }));
     moved.then_some(Command::EndGesture)
@@ -296,7 +322,12 @@ fn select_at(session: &Session, pixel: DVec2, behind: bool) -> Option<Command> {
 }
 
 /// Shift + wheel: depth along the ray of the surface point under the cursor, or of the object's centre off the object.
-fn depth_by_wheel(session: &Session, view: &PhotoView, position: DVec2, silhouette_px: f64) -> Option<Command> {
+fn depth_by_wheel(
+    session: &Session,
+    view: &PhotoView,
+    position: DVec2,
+    silhouette_px: f64,
+) -> Option<Command> {
     let pixel = view.image_from_viewport(position);
     let (photo, object, anchor) = depth_target(session, pixel)?;
     let scene = session.scene();

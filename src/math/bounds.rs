@@ -46,10 +46,8 @@ impl Bounds {
     /// The sphere around the box's centre that just holds `points`: never larger than the box's own.
     pub fn sphere_of(&self, points: &[Vec3]) -> BoundingSphere {
         let center = self.center();
-        let radius_squared = points
-            .iter()
-            .map(|point| point.as_dvec3().distance_squared(center))
-            .fold(0.0, f64::max);
+        let radius_squared =
+            points.iter().map(|point| point.as_dvec3().distance_squared(center)).fold(0.0, f64::max);
         BoundingSphere { center, radius: radius_squared.sqrt() }
     }
 }

@@ -87,7 +87,8 @@ impl Distortion {
     /// The squared radius that counts: the point's own within the lens, the lens's beyond it.
     fn held_radius_squared(&self, r2: f64) -> f64 {
         // Near the axis the polynomial grows whatever the signs are; the search for its end is left out there.
-        let falls_at_most = r2 * (3.0 * self.k1.abs() + r2 * (5.0 * self.k2.abs() + r2 * 7.0 * self.k3.abs()));
+        let falls_at_most =
+            r2 * (3.0 * self.k1.abs() + r2 * (5.0 * self.k2.abs() + r2 * 7.0 * self.k3.abs()));
         if falls_at_most < 1.0 { r2 } else { r2.min(self.valid_radius_squared()) }
     }
 
@@ -268,8 +269,7 @@ mod tests {
     #[test]
     fn points_outside_a_strong_lens_do_not_fold_back() {
         let lens = Distortion { k1: -0.4, ..Distortion::NONE };
-        let radii: Vec<f64> =
-            (0..60).map(|i| lens.distort(DVec2::new(f64::from(i) * 0.1, 0.0)).x).collect();
+        let radii: Vec<f64> = (0..60).map(|i| lens.distort(DVec2::new(f64::from(i) * 0.1, 0.0)).x).collect();
         assert!(radii.windows(2).all(|pair| pair[1] > pair[0]), "{radii:?}");
     }
 }

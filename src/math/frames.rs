@@ -53,12 +53,8 @@ pub fn clip_from_camera(camera: &Intrinsics, rect: &ImageRect) -> DMat4 {
         2.0 * (camera.cx - rect.min.x) / size.x - 1.0,
         0.0,
     );
-    let row_y = DVec4::new(
-        0.0,
-        -2.0 * camera.fy / size.y,
-        1.0 - 2.0 * (camera.cy - rect.min.y) / size.y,
-        0.0,
-    );
+    let row_y =
+        DVec4::new(0.0, -2.0 * camera.fy / size.y, 1.0 - 2.0 * (camera.cy - rect.min.y) / size.y, 0.0);
     let row_depth = DVec4::new(0.0, 0.0, 0.0, NEAR_MM);
     let row_w = DVec4::new(0.0, 0.0, 1.0, 0.0);
     DMat4::from_cols(row_x, row_y, row_depth, row_w).transpose()

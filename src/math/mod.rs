@@ -9,7 +9,7 @@ mod frames;
 mod pose;
 mod ray;
 
-pub use bounds::{Bounds, BoundingSphere};
+pub use bounds::{BoundingSphere, Bounds};
 pub use camera::{CameraError, Distortion, Intrinsics};
 pub use frames::{ImageRect, NEAR_MM, clip_from_camera};
 pub use pose::{Pose, PoseError, nearest_rotation, rotation_defect};

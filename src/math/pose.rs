@@ -79,12 +79,7 @@ impl Pose {
     pub fn to_rows(&self) -> [[f64; 4]; 4] {
         let [x, y, z] = self.rotation_rows();
         let t = self.translation_mm;
-        [
-            [x[0], x[1], x[2], t.x],
-            [y[0], y[1], y[2], t.y],
-            [z[0], z[1], z[2], t.z],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
+        [[x[0], x[1], x[2], t.x], [y[0], y[1], y[2], t.y], [z[0], z[1], z[2], t.z], [0.0, 0.0, 0.0, 1.0]]
     }
 
     /// The rotation, row by row.
@@ -201,11 +196,7 @@ fn left_jacobian(rotation_vector: DVec3) -> DMat3 {
 }
 
 fn skew(v: DVec3) -> DMat3 {
-    DMat3::from_cols(
-        DVec3::new(0.0, v.z, -v.y),
-        DVec3::new(-v.z, 0.0, v.x),
-        DVec3::new(v.y, -v.x, 0.0),
-    )
+    DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
 }
 
 #[cfg(test)]

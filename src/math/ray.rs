@@ -19,9 +19,6 @@ impl Ray {
 
     /// The same ray, seen from frame `b`.
     pub fn transformed(&self, b_from_a: &Pose) -> Self {
-        Self {
-            origin: b_from_a.transform_point(self.origin),
-            direction: b_from_a.rotation * self.direction,
-        }
+        Self { origin: b_from_a.transform_point(self.origin), direction: b_from_a.rotation * self.direction }
     }
 }

@@ -31,7 +31,8 @@ pub fn decode(bytes: &[u8]) -> Result<DecodedPhoto, PhotoError> {
         Ok(ImageFormat::Jpeg) => (ImageFormat::Jpeg, "JPEG"),
         _ => return Err(PhotoError::UnknownFormat),
     };
-    let damaged = |error: image::ImageError| PhotoError::Damaged { format: format_name, reason: error.to_string() };
+    let damaged =
+        |error: image::ImageError| PhotoError::Damaged { format: format_name, reason: error.to_string() };
 
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
@@ -52,9 +53,8 @@ pub fn decode(bytes: &[u8]) -> Result<DecodedPhoto, PhotoError> {
     let pixels = Pixels { width: picture.width(), height: picture.height(), rgba: picture.into_raw() };
     // The equivalent focal length is defined along the sensor's long side, however the camera was held.
     let long_side_px = f64::from(pixels.width.max(pixels.height));
-    let exif_focal_px = exif
-        .and_then(focal_35mm)
-        .map(|focal_mm| focal_mm / FULL_FRAME_WIDTH_MM * long_side_px);
+    let exif_focal_px =
+        exif.and_then(focal_35mm).map(|focal_mm| focal_mm / FULL_FRAME_WIDTH_MM * long_side_px);
     Ok(DecodedPhoto { pixels, exif_focal_px })
 }
 

@@ -13,8 +13,8 @@ mod web;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
-    Background, default_storage, download, fetch_example, navigation_ms, now_ms, page_parameter, page_version, pick_files,
-    reload, report_crash, spawn, update_offer, wasm_bytes,
+    Background, default_storage, download, fetch_example, navigation_ms, now_ms, page_parameter,
+    page_version, pick_files, reload, report_crash, spawn, update_offer, wasm_bytes,
 };
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
@@ -22,8 +22,9 @@ pub use page_api::{
 pub use storage::{MemoryStorage, Saved, SavedAsset, Storage, StorageFuture};
 #[cfg(target_arch = "wasm32")]
 pub use web::{
-    Background, default_storage, download, fetch_example, install_panic_hook, navigation_ms, now_ms, page_parameter,
-    page_version, pick_files, reload, report_crash, spawn, update_offer, wasm_bytes, watch_for_updates,
+    Background, default_storage, download, fetch_example, install_panic_hook, navigation_ms, now_ms,
+    page_parameter, page_version, pick_files, reload, report_crash, spawn, update_offer, wasm_bytes,
+    watch_for_updates,
 };
 
 /// A file that the user picked or dropped.

@@ -14,16 +14,39 @@ pub enum PageCall {
     /// Resolves when the program answers calls.
     Ready,
     /// What a drop does. `poses_as`: "annotations" or "reference", else the user is asked.
-    Load { files: Vec<FileBytes>, poses_as: Option<String> },
+    Load {
+        files: Vec<FileBytes>,
+        poses_as: Option<String>,
+    },
     State,
-    SetPose { photo: u32, object: u32, camera_from_object: [[f64; 4]; 4] },
+    SetPose {
+        photo: u32,
+        object: u32,
+        camera_from_object: [[f64; 4]; 4],
+    },
     /// An entry of the command table, or one of the few that take a value.
-    Command { name: String, value: Option<PageValue> },
-    PageFromImage { u: f64, v: f64 },
-    ImageFromPage { x: f64, y: f64 },
-    Pick { x: f64, y: f64 },
+    Command {
+        name: String,
+        value: Option<PageValue>,
+    },
+    PageFromImage {
+        u: f64,
+        v: f64,
+    },
+    ImageFromPage {
+        x: f64,
+        y: f64,
+    },
+    Pick {
+        x: f64,
+        y: f64,
+    },
     Widgets,
-    Render { photo: Option<u32>, kind: String, object: Option<u32> },
+    Render {
+        photo: Option<u32>,
+        kind: String,
+        object: Option<u32>,
+    },
     Perf,
 }
 
@@ -40,7 +63,10 @@ pub enum PageAnswer {
     /// JSON text.
     Json(String),
     State(PageState),
-    Point { x: f64, y: f64 },
+    Point {
+        x: f64,
+        y: f64,
+    },
     Picked(Option<Picked>),
     Widgets(Vec<Widget>),
     Bytes(Vec<u8>),

@@ -64,7 +64,12 @@ pub fn silhouette_png(ids: &Pixels) -> Option<Vec<u8>> {
 }
 
 /// A mask or depth picture as PNG, without a GPU; `None` for other kinds and where photo or object are not there.
-pub fn raster_png(scene: &Scene, photo: PhotoId, kind: ExportKind, object: Option<ObjectId>) -> Option<Vec<u8>> {
+pub fn raster_png(
+    scene: &Scene,
+    photo: PhotoId,
+    kind: ExportKind,
+    object: Option<ObjectId>,
+) -> Option<Vec<u8>> {
     let camera = scene.photo(photo)?.camera;
     let alone = matches!(kind, ExportKind::Mask);
     let placed = scene.objects_in(photo).filter(|(candidate, _)| {
@@ -92,6 +97,7 @@ fn mask_png(image: &RasterImage, id: u32) -> Option<Vec<u8>> {
 
 fn depth_png(image: &RasterImage) -> Option<Vec<u8>> {
     // The cast saturates: what is farther than 6.5 m has the largest value.
-    let values = image.depth_mm.iter().map(|&depth_mm| (depth_mm * DEPTH_STEPS_PER_MM).round() as u16).collect();
+    let values =
+        image.depth_mm.iter().map(|&depth_mm| (depth_mm * DEPTH_STEPS_PER_MM).round() as u16).collect();
     png_gray16(image.width, image.height, values)
 }

@@ -57,7 +57,8 @@ impl Gpu {
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d.min(8192),
             ..wgpu::Limits::downlevel_webgl2_defaults()
         };
-        let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..wgpu::DeviceDescriptor::default() };
+        let descriptor =
+            wgpu::DeviceDescriptor { required_limits: limits, ..wgpu::DeviceDescriptor::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| GpuError::NoDevice(error.to_string()))?;
         Ok(Self { device, queue })

@@ -69,10 +69,18 @@ fn upload(gpu: &Gpu, usage: &Usage, mesh: &MeshAsset) -> MeshBuffers {
     let shading = shading_vertices(&mesh.mesh);
     let buffer = |label, contents: &[u8], usage_flag| {
         usage.add_upload(contents.len());
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage: usage_flag })
+        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents,
+            usage: usage_flag,
+        })
     };
     MeshBuffers {
-        vertices: buffer("mesh vertices", bytemuck::cast_slice(&shading.vertices), wgpu::BufferUsages::VERTEX),
+        vertices: buffer(
+            "mesh vertices",
+            bytemuck::cast_slice(&shading.vertices),
+            wgpu::BufferUsages::VERTEX,
+        ),
         indices: buffer("mesh indices", bytemuck::cast_slice(&shading.indices), wgpu::BufferUsages::INDEX),
         index_count: shading.indices.len() as u32,
     }

@@ -5,8 +5,8 @@
 
 mod export;
 mod gpu;
-mod photos;
 mod meshes;
+mod photos;
 mod picture;
 mod pipelines;
 mod readback;
@@ -15,9 +15,9 @@ mod targets;
 mod uniforms;
 
 pub use export::{ExportKind, export_picture, raster_png, silhouette_png};
-pub use gpu::{Gpu, Usage};
 #[cfg(not(target_arch = "wasm32"))]
 pub use gpu::GpuError;
+pub use gpu::{Gpu, Usage};
 pub use picture::{Item, Outline, PhotoLayer, Picture, picture_of};
 pub use pipelines::{SHADERS, ShaderSource};
 pub use readback::{PixelsPending, ReadBackError};

@@ -76,7 +76,12 @@ impl Outline {
 }
 
 /// The whole of one photo of a scene, all of whose visible objects are in the picture.
-pub fn picture_of(scene: &Scene, photo: PhotoId, pixels: Option<Arc<Pixels>>, selected: Option<ObjectId>) -> Option<Picture> {
+pub fn picture_of(
+    scene: &Scene,
+    photo: PhotoId,
+    pixels: Option<Arc<Pixels>>,
+    selected: Option<ObjectId>,
+) -> Option<Picture> {
     let camera = scene.photo(photo)?.camera;
     let items = scene.objects_in(photo).filter(|(object, _)| object.visible).enumerate();
     let items = items.map(|(index, (object, annotation))| Item {
@@ -101,7 +106,8 @@ pub fn picture_of(scene: &Scene, photo: PhotoId, pixels: Option<Arc<Pixels>>, se
 
 fn ghosts_of(scene: &Scene, photo: PhotoId) -> Vec<Item> {
     let visible = scene.references.iter().filter(|reference| reference.visible);
-    let poses = visible.flat_map(|reference| reference.poses.iter()).filter(|((in_photo, _), _)| *in_photo == photo);
+    let poses =
+        visible.flat_map(|reference| reference.poses.iter()).filter(|((in_photo, _), _)| *in_photo == photo);
     let known = poses.filter_map(|((_, object), pose)| Some((scene.object(*object)?, pose)));
     known
         .enumerate()

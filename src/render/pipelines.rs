@@ -74,7 +74,12 @@ fn pipeline_layout(device: &wgpu::Device, groups: &[&wgpu::BindGroupLayout]) -> 
     })
 }
 
-fn uniform_layout(device: &wgpu::Device, label: &str, size: usize, has_dynamic_offset: bool) -> wgpu::BindGroupLayout {
+fn uniform_layout(
+    device: &wgpu::Device,
+    label: &str,
+    size: usize,
+    has_dynamic_offset: bool,
+) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(label),
         entries: &[wgpu::BindGroupLayoutEntry {

@@ -73,7 +73,8 @@ impl PixelsPending {
     pub fn wait(&self, gpu: &Gpu) -> Result<Pixels, ReadBackError> {
         let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
         waited.map_err(|error| ReadBackError::Map(error.to_string()))?;
-        self.poll(gpu).unwrap_or_else(|| Err(ReadBackError::Map("the device finished without a copy".to_owned())))
+        self.poll(gpu)
+            .unwrap_or_else(|| Err(ReadBackError::Map("the device finished without a copy".to_owned())))
     }
 
     fn read(&self) -> Result<Pixels, ReadBackError> {

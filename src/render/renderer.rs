@@ -94,7 +94,13 @@ impl Renderer {
 
     /// Records the passes up to the composition, for a target of `size` pixels at `corner` of its framebuffer. Does nothing
     /// where the targets hold that picture already.
-    pub fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, picture: &Picture, corner: [u32; 2], size: [u32; 2]) {
+    pub fn prepare(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        picture: &Picture,
+        corner: [u32; 2],
+        size: [u32; 2],
+    ) {
         let limit = self.gpu.device.limits().max_texture_dimension_2d;
         let size = size.map(|side| side.clamp(1, limit));
         let wanted = Drawn { picture: picture.clone(), corner, size };
@@ -182,12 +188,19 @@ impl Renderer {
         self.draw_items(&mut pass, &self.pipelines.ids, &picture.items, 0);
         drop(pass);
         if !picture.ghosts.is_empty() {
-            let mut pass = begin_pass(encoder, "ghosts", &targets.ghosts_view, None, Some(&targets.ids_depth));
+            let mut pass =
+                begin_pass(encoder, "ghosts", &targets.ghosts_view, None, Some(&targets.ids_depth));
             self.draw_items(&mut pass, &self.pipelines.ids, &picture.ghosts, picture.items.len());
         }
     }
 
-    fn draw_items(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, items: &[Item], first: usize) {
+    fn draw_items(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        items: &[Item],
+        first: usize,
+    ) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &self.frame_group, &[]);
         for (slot, item) in (first..).zip(items) {
@@ -242,7 +255,10 @@ fn begin_pass<'encoder>(
         })],
         depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
             view,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Discard,
+            }),
             stencil_ops: None,
         }),
         timestamp_writes: None,
@@ -251,7 +267,11 @@ fn begin_pass<'encoder>(
     })
 }
 
-fn objects_buffer(device: &wgpu::Device, pipelines: &Pipelines, capacity: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
+fn objects_buffer(
+    device: &wgpu::Device,
+    pipelines: &Pipelines,
+    capacity: usize,
+) -> (wgpu::Buffer, wgpu::BindGroup) {
     let buffer = uniform_buffer(device, "objects", capacity * OBJECT_STRIDE);
     let group = uniform_group(device, &pipelines.object_layout, &buffer, size_of::<ObjectUniform>());
     (buffer, group)

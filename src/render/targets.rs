@@ -27,7 +27,14 @@ impl Targets {
         let ids = target(device, "ids", size, COLOR_FORMAT, 1, read);
         Self {
             size,
-            overlay_samples: view(&target(device, "overlay samples", size, COLOR_FORMAT, OVERLAY_SAMPLES, none)),
+            overlay_samples: view(&target(
+                device,
+                "overlay samples",
+                size,
+                COLOR_FORMAT,
+                OVERLAY_SAMPLES,
+                none,
+            )),
             overlay: view(&target(device, "overlay", size, COLOR_FORMAT, 1, read)),
             overlay_depth: view(&target(device, "overlay depth", size, DEPTH_FORMAT, OVERLAY_SAMPLES, none)),
             ids_view: view(&ids),

@@ -34,7 +34,9 @@ impl FrameUniform {
         let lens = picture.camera.distortion;
         let photo = picture.photo.as_ref().map(|layer| &layer.0);
         let photo_pixels_per_target_pixel = rect.size().x / f64::from(size[0]);
-        let outline = picture.outline.map_or([0.0; 2], |outline| [outline.width_px / 2.0, outline.selected_width_px / 2.0]);
+        let outline = picture
+            .outline
+            .map_or([0.0; 2], |outline| [outline.width_px / 2.0, outline.selected_width_px / 2.0]);
         let ghosts = if picture.ghosts.is_empty() { 0.0 } else { 5.0 };
         // References are always outlined: they have no other look.
         let reach = if outline[1] > 0.0 || ghosts == 0.0 { outline[1] } else { 1.0 };

@@ -2,8 +2,8 @@
 //!
 //! A [`Scene`] is cheap to clone (files, meshes and photos are shared), so undo keeps whole scenes.
 
-mod asset;
 mod annotation;
+mod asset;
 mod color;
 mod placement;
 
@@ -117,9 +117,7 @@ impl Scene {
 
     /// The objects that are in a photo, with their annotations, in the order of [`Self::objects`].
     pub fn objects_in(&self, photo: PhotoId) -> impl Iterator<Item = (&Object, &Annotation)> {
-        self.objects
-            .iter()
-            .filter_map(move |object| Some((object, self.annotation(photo, object.id)?)))
+        self.objects.iter().filter_map(move |object| Some((object, self.annotation(photo, object.id)?)))
     }
 
     /// Adds a photo with a guessed camera, or finds the one with the same content.
@@ -179,7 +177,9 @@ impl Scene {
         if !changed {
             return;
         }
-        for ((_, object), annotation) in self.annotations.range_mut((id, ObjectId(0))..=(id, ObjectId(u32::MAX))) {
+        for ((_, object), annotation) in
+            self.annotations.range_mut((id, ObjectId(0))..=(id, ObjectId(u32::MAX)))
+        {
             if annotation.state != AnnotationState::Untouched {
                 annotation.camera_changed = true;
             } else if let Some(object) = self.objects.iter().find(|candidate| candidate.id == *object) {

@@ -45,13 +45,15 @@ impl Session {
                 let label = if locked { "Lock object" } else { "Unlock object" };
                 self.edit_object(object, label, |object| object.locked = locked)
             }
-            Command::SetReferenceVisible { name, visible } => self.change("Show or hide reference", |scene| {
-                let named = scene.references.iter_mut().filter(|reference| *reference.name == *name);
-                named.for_each(|reference| reference.visible = visible);
-            }),
-            Command::RemoveReference { name } => {
-                self.change("Remove reference", |scene| scene.references.retain(|reference| *reference.name != *name))
+            Command::SetReferenceVisible { name, visible } => {
+                self.change("Show or hide reference", |scene| {
+                    let named = scene.references.iter_mut().filter(|reference| *reference.name == *name);
+                    named.for_each(|reference| reference.visible = visible);
+                })
             }
+            Command::RemoveReference { name } => self.change("Remove reference", |scene| {
+                scene.references.retain(|reference| *reference.name != *name);
+            }),
 
             Command::Place { photo, object } => self.place(photo, object, now_ms),
             Command::Withdraw { photo, object } => self.withdraw(photo, object),
@@ -107,7 +109,12 @@ impl Session {
         self.change(label, edit)
     }
 
-    fn edit_object(&mut self, id: ObjectId, label: &str, edit: impl FnOnce(&mut crate::scene::Object)) -> Applied {
+    fn edit_object(
+        &mut self,
+        id: ObjectId,
+        label: &str,
+        edit: impl FnOnce(&mut crate::scene::Object),
+    ) -> Applied {
         self.with_object(id, label, |scene| {
             if let Some(object) = scene.object_mut(id) {
                 edit(object);
@@ -148,7 +155,14 @@ impl Session {
         })
     }
 
-    fn set_pose(&mut self, photo: PhotoId, object: ObjectId, pose: Pose, source: PoseSource, now_ms: f64) -> Applied {
+    fn set_pose(
+        &mut self,
+        photo: PhotoId,
+        object: ObjectId,
+        pose: Pose,
+        source: PoseSource,
+        now_ms: f64,
+    ) -> Applied {
         self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?;
         let target = self.scene.object(object).ok_or(CommandError::NoObject(object))?;
         if target.locked {

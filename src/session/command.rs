@@ -25,24 +25,53 @@ pub enum Command {
     SetTool(Tool),
     SetOverlayOpacity(f32),
 
-    SetCamera { photo: PhotoId, camera: Intrinsics, origin: CameraOrigin },
+    SetCamera {
+        photo: PhotoId,
+        camera: Intrinsics,
+        origin: CameraOrigin,
+    },
     RemovePhoto(PhotoId),
     RemoveObject(ObjectId),
     SetObjectVisible(ObjectId, bool),
     SetObjectLocked(ObjectId, bool),
-    SetReferenceVisible { name: Arc<str>, visible: bool },
-    RemoveReference { name: Arc<str> },
+    SetReferenceVisible {
+        name: Arc<str>,
+        visible: bool,
+    },
+    RemoveReference {
+        name: Arc<str>,
+    },
 
     /// Puts an object into a photo at the start pose.
-    Place { photo: PhotoId, object: ObjectId },
+    Place {
+        photo: PhotoId,
+        object: ObjectId,
+    },
     /// Takes an object out of a photo.
-    Withdraw { photo: PhotoId, object: ObjectId },
-    SetPose { photo: PhotoId, object: ObjectId, camera_from_object: Pose, source: PoseSource },
+    Withdraw {
+        photo: PhotoId,
+        object: ObjectId,
+    },
+    SetPose {
+        photo: PhotoId,
+        object: ObjectId,
+        camera_from_object: Pose,
+        source: PoseSource,
+    },
     /// Small steps of one kind, less than half a second apart, are one undo step.
-    Nudge { photo: PhotoId, object: ObjectId, camera_from_object: Pose, label: &'static str },
+    Nudge {
+        photo: PhotoId,
+        object: ObjectId,
+        camera_from_object: Pose,
+        label: &'static str,
+    },
     BeginGesture(&'static str),
     /// A pose within a gesture.
-    Drag { photo: PhotoId, object: ObjectId, camera_from_object: Pose },
+    Drag {
+        photo: PhotoId,
+        object: ObjectId,
+        camera_from_object: Pose,
+    },
     EndGesture,
     /// Puts everything back to where the gesture began.
     CancelGesture,

@@ -65,10 +65,15 @@ impl Session {
     fn add_meshes(&mut self, batch: &Batch, now_ms: f64) {
         for mesh in &batch.meshes {
             let known = self.scene.objects.iter().find(|object| object.mesh.sha256 == mesh.sha256);
-            let id = known.map(|object| object.id).unwrap_or_else(|| self.scene.add_object(mesh.clone()));
+            let known = known.map(|object| object.id);
+            let id = match known {
+                Some(id) => id,
+                None => self.scene.add_object(mesh.clone()),
+            };
             self.selected = Some(id);
         }
-        let waits_for_poses = !batch.poses.is_empty() || self.waiting.iter().any(|w| w.incoming.pose_count() > 0);
+        let waits_for_poses =
+            !batch.poses.is_empty() || self.waiting.iter().any(|w| w.incoming.pose_count() > 0);
         if waits_for_poses {
             return;
         }
@@ -89,7 +94,11 @@ impl Session {
         if targets.is_empty() {
             let mut incoming = Incoming::new(&file.file_name);
             incoming.cameras_to_come = Some(file);
-            self.waiting.push(Waiting { incoming, poses_as: PosesAs::Annotations, missing: vec!["a photo".to_owned()] });
+            self.waiting.push(Waiting {
+                incoming,
+                poses_as: PosesAs::Annotations,
+                missing: vec!["a photo".to_owned()],
+            });
             return;
         }
         self.give_camera(file, targets);
@@ -115,8 +124,9 @@ impl Session {
     /// Gives poses to the scene; what finds no photo or mesh waits for them.
     fn take_poses(&mut self, incoming: Incoming, poses_as: PosesAs, now_ms: f64) -> Vec<Effect> {
         let outcome = incoming.apply(&mut self.scene, poses_as, now_ms);
-        let mut effects: Vec<Effect> =
-            remarks_of(&incoming, &outcome).map(|remark| notify_warning(&incoming.file_name, remark)).collect();
+        let mut effects: Vec<Effect> = remarks_of(&incoming, &outcome)
+            .map(|remark| notify_warning(&incoming.file_name, remark))
+            .collect();
         effects.push(Effect::Notify(describe(&incoming, poses_as, &outcome)));
         self.ask_about_cameras(&outcome);
         if !outcome.missing.is_empty() {
@@ -136,7 +146,9 @@ impl Session {
             match known {
                 Some(photos) if photos.contains(photo) => {}
                 Some(photos) => photos.push(*photo),
-                None => self.questions.push(Question::CameraSize { file: file.clone(), photos: vec![*photo] }),
+                None => {
+                    self.questions.push(Question::CameraSize { file: file.clone(), photos: vec![*photo] });
+                }
             }
         }
     }
@@ -240,7 +252,10 @@ impl Session {
         self.scene = scene;
         self.questions.clear();
         self.waiting.clear();
-        self.look = Look { overlay_opacity: document.view.overlay_opacity.clamp(0.0, 1.0), outline: document.view.outline };
+        self.look = Look {
+            overlay_opacity: document.view.overlay_opacity.clamp(0.0, 1.0),
+            outline: document.view.outline,
+        };
         self.restore_view(document);
         if opening.restored {
             self.history = History::default();
@@ -290,7 +305,9 @@ fn describe(incoming: &Incoming, poses_as: PosesAs, outcome: &Outcome) -> Notice
         files += &format!(" and {} more", outcome.missing.len() - shown.len());
     }
     if count == 0 {
-        Notice::warning(format!("{name}: its poses wait for their photos and meshes. Drop these files too: {files}"))
+        Notice::warning(format!(
+            "{name}: its poses wait for their photos and meshes. Drop these files too: {files}"
+        ))
     } else {
         Notice::info(format!("{name}: {count} of {all} pose{plural} {what}, the others wait for {files}"))
     }

@@ -45,7 +45,9 @@ impl Session {
         let count = document.pose_count();
         let file_name = format!("{}.json", self.file_stem("poses"));
         let notice = match count {
-            0 => Notice::warning(format!("{file_name}: no object has been posed yet, the file holds no poses")),
+            0 => {
+                Notice::warning(format!("{file_name}: no object has been posed yet, the file holds no poses"))
+            }
             1 => Notice::info(format!("{file_name}: 1 pose saved")),
             _ => Notice::info(format!("{file_name}: {count} poses saved")),
         };
@@ -55,7 +57,8 @@ impl Session {
 
     fn save_workspace(&mut self) -> Applied {
         let document = self.document(Keep::Everything);
-        let bytes = write_workspace(&document, &self.scene).map_err(|error| CommandError::Failed(error.to_string()))?;
+        let bytes = write_workspace(&document, &self.scene)
+            .map_err(|error| CommandError::Failed(error.to_string()))?;
         let file_name = format!("{}.zip", self.file_stem("workspace"));
         Ok(vec![Effect::Download { file_name, bytes: Arc::from(bytes) }])
     }
@@ -67,7 +70,8 @@ impl Session {
             [photo] => crate::scene::file_stem(&photo.asset.file_name),
             _ => return format!("pinpose-{otherwise}"),
         };
-        let safe: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+        let safe: String =
+            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
         format!("{safe}-{otherwise}")
     }
 
@@ -118,8 +122,12 @@ impl Session {
 
     fn remove_shown(&mut self, id: CommandId, now_ms: f64) -> Applied {
         match (id, self.photo, self.selected) {
-            (CommandId::RemovePhoto, Some(photo), _) => self.apply(super::Command::RemovePhoto(photo), now_ms),
-            (CommandId::RemoveObject, _, Some(object)) => self.apply(super::Command::RemoveObject(object), now_ms),
+            (CommandId::RemovePhoto, Some(photo), _) => {
+                self.apply(super::Command::RemovePhoto(photo), now_ms)
+            }
+            (CommandId::RemoveObject, _, Some(object)) => {
+                self.apply(super::Command::RemoveObject(object), now_ms)
+            }
             _ => Ok(Vec::new()),
         }
     }

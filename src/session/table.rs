@@ -164,7 +164,9 @@ mod tests {
     fn the_table_is_in_the_order_of_the_ids_and_names_are_unique() {
         for (index, info) in COMMANDS.iter().enumerate() {
             assert_eq!(info.id as usize, index, "{}", info.name);
-            let same = |other: &&CommandInfo| other.name == info.name || (info.shortcut.is_some() && other.shortcut == info.shortcut);
+            let same = |other: &&CommandInfo| {
+                other.name == info.name || (info.shortcut.is_some() && other.shortcut == info.shortcut)
+            };
             assert_eq!(COMMANDS.iter().filter(same).count(), 1, "{}", info.name);
         }
     }

@@ -23,10 +23,12 @@ pub fn draw(ui: &mut Ui, session: &Session, form: &mut CameraForm, commands: &mu
 fn origin(ui: &mut Ui, photo: &Photo) {
     let text = match &photo.camera_origin {
         CameraOrigin::AssumedFieldOfView => {
-            RichText::new("A guess: 60° field of view. Drop a camera file or type the numbers.").color(theme::WARNING)
+            RichText::new("A guess: 60° field of view. Drop a camera file or type the numbers.")
+                .color(theme::WARNING)
         }
         CameraOrigin::Exif => {
-            RichText::new("Estimated from the photo's EXIF data. Drop a camera file or type the numbers.").color(theme::WARNING)
+            RichText::new("Estimated from the photo's EXIF data. Drop a camera file or type the numbers.")
+                .color(theme::WARNING)
         }
         CameraOrigin::Typed => RichText::new("Typed").weak(),
         CameraOrigin::File(name) => RichText::new(format!("From {name}")).weak(),

@@ -24,11 +24,14 @@ pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, command
         let modal = Modal::new(Id::unique("question")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| {
             ui.set_width(400.0);
             match question {
-                Question::PosesAs(incoming) => poses_question(ui, &incoming.file_name, incoming.pose_count(), commands),
+                Question::PosesAs(incoming) => {
+                    poses_question(ui, &incoming.file_name, incoming.pose_count(), commands);
+                }
                 Question::CameraSize { file, photos } => {
                     let size = file.size.unwrap_or_default();
                     let photo = photos.first().and_then(|id| session.scene().photo(*id));
-                    let photo_size = photo.map(|photo| (photo.asset.width, photo.asset.height)).unwrap_or_default();
+                    let photo_size =
+                        photo.map(|photo| (photo.asset.width, photo.asset.height)).unwrap_or_default();
                     camera_question(ui, &file.file_name, size, photo_size, commands);
                 }
             }
@@ -39,7 +42,9 @@ pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, command
         return;
     }
     if state.shortcuts_open {
-        let modal = Modal::new(Id::unique("shortcuts")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| shortcuts(ui, &mut state.shortcuts_open));
+        let modal = Modal::new(Id::unique("shortcuts"))
+            .frame(theme::dialog_frame(ctx))
+            .show(ctx, |ui| shortcuts(ui, &mut state.shortcuts_open));
         if modal.should_close() {
             state.shortcuts_open = false;
         }
@@ -55,11 +60,23 @@ fn poses_question(ui: &mut Ui, file_name: &str, count: usize, commands: &mut Vec
     let annotations = Answer::UsePosesAs(PosesAs::Annotations);
     answer(ui, theme::primary_button("Start poses"), "My poses: I go on from them.", annotations, commands);
     let reference = Answer::UsePosesAs(PosesAs::Reference);
-    answer(ui, egui::Button::new("Reference"), "Truth or another's poses, to compare with. Read-only.", reference, commands);
+    answer(
+        ui,
+        egui::Button::new("Reference"),
+        "Truth or another's poses, to compare with. Read-only.",
+        reference,
+        commands,
+    );
     answer(ui, egui::Button::new("Cancel"), "Leave this file out.", Answer::Refuse, commands);
 }
 
-fn camera_question(ui: &mut Ui, file_name: &str, (w, h): (u32, u32), photo: (u32, u32), commands: &mut Vec<Command>) {
+fn camera_question(
+    ui: &mut Ui,
+    file_name: &str,
+    (w, h): (u32, u32),
+    photo: (u32, u32),
+    commands: &mut Vec<Command>,
+) {
     ui.heading("The camera is for another size");
     ui.add_space(6.0);
     ui.label(format!("{file_name} is for {w} × {h} pixels, the photo has {} × {}.", photo.0, photo.1));

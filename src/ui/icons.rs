@@ -23,7 +23,8 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, tooltip: &str, enabled:
     if enabled && (response.hovered() || response.has_focus()) {
         ui.painter().rect_filled(rect, 5.0, visuals.weak_bg_fill);
     }
-    let color = if enabled { visuals.fg_stroke.color } else { ui.visuals().weak_text_color().gamma_multiply(0.5) };
+    let color =
+        if enabled { visuals.fg_stroke.color } else { ui.visuals().weak_text_color().gamma_multiply(0.5) };
     draw(ui.painter(), icon, rect.shrink(4.0), Stroke::new(1.4, color));
     response.on_hover_text(tooltip)
 }
@@ -65,7 +66,11 @@ fn draw(painter: &Painter, icon: Icon, rect: Rect, stroke: Stroke) {
         }
         Icon::Undo | Icon::Redo => {
             let flip = |points: Vec<(f32, f32)>| -> Vec<(f32, f32)> {
-                if icon == Icon::Redo { points.into_iter().map(|(x, y)| (14.0 - x, y)).collect() } else { points }
+                if icon == Icon::Redo {
+                    points.into_iter().map(|(x, y)| (14.0 - x, y)).collect()
+                } else {
+                    points
+                }
             };
             let mut hook = vec![(2.0, 5.0)];
             hook.extend(arc((8.5, 8.5), 3.5, -90.0, 90.0));
@@ -85,7 +90,8 @@ fn arc(center: (f32, f32), radius: f32, from_degrees: f32, to_degrees: f32) -> V
     let steps = 16;
     (0..=steps)
         .map(|step| {
-            let angle = (from_degrees + (to_degrees - from_degrees) * step as f32 / steps as f32).to_radians();
+            let angle =
+                (from_degrees + (to_degrees - from_degrees) * step as f32 / steps as f32).to_radians();
             let Pos2 { x, y } = pos2(center.0, center.1) + radius * Vec2::angled(angle);
             (x, y)
         })

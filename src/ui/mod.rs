@@ -76,10 +76,11 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     });
     // An empty scene has nothing to list.
     if !state.panels_hidden && !session.scene().is_empty() {
-        Panel::left("side panel").frame(theme::panel_frame(ui)).exact_size(theme::PANEL_WIDTH).resizable(false).show(
-            ui,
-            |ui| side_panel(ui, session, &mut state.camera_form, &mut asked.commands),
-        );
+        Panel::left("side panel")
+            .frame(theme::panel_frame(ui))
+            .exact_size(theme::PANEL_WIDTH)
+            .resizable(false)
+            .show(ui, |ui| side_panel(ui, session, &mut state.camera_form, &mut asked.commands));
     }
     CentralPanel::default().frame(Frame::NONE.fill(theme::VIEWPORT_BACKGROUND)).show(ui, |ui| {
         if session.scene().is_empty() {

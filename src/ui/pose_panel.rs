@@ -10,7 +10,11 @@ use crate::session::{Command, CommandId, Session};
 pub fn draw(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     theme::section(ui, "Pose");
     let Some((_, object, annotation)) = session.selected_annotation() else {
-        let hint = if session.scene().objects.is_empty() { "No object yet" } else { "Select an object of this photo" };
+        let hint = if session.scene().objects.is_empty() {
+            "No object yet"
+        } else {
+            "Select an object of this photo"
+        };
         ui.label(RichText::new(hint).weak());
         return;
     };

@@ -32,7 +32,8 @@ pub fn photos(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
 
 /// What has been done in a photo: an empty, a half or a full dot, and words.
 fn photo_state(ui: &mut Ui, scene: &Scene, photo: &Photo) {
-    let states: Vec<AnnotationState> = scene.objects_in(photo.id).map(|(_, annotation)| annotation.state).collect();
+    let states: Vec<AnnotationState> =
+        scene.objects_in(photo.id).map(|(_, annotation)| annotation.state).collect();
     let done = |state: &AnnotationState| matches!(state, AnnotationState::Posed | AnnotationState::Confirmed);
     let (filled, color, meaning) = if states.is_empty() {
         (0.0, ui.visuals().weak_text_color(), "No object in this photo yet")
@@ -86,7 +87,13 @@ fn object_row(
     });
 }
 
-fn object_buttons(ui: &mut Ui, session: &Session, object: &Object, placed: bool, commands: &mut Vec<Command>) {
+fn object_buttons(
+    ui: &mut Ui,
+    session: &Session,
+    object: &Object,
+    placed: bool,
+    commands: &mut Vec<Command>,
+) {
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.add_space(8.0);
     if row_button(ui, Icon::Trash, &format!("Remove {}", object.name)) {
@@ -121,7 +128,8 @@ pub fn references(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             let mut visible = reference.visible;
             let text = RichText::new(&reference.name).color(theme::color32(reference_color()));
-            let details = format!("{} poses to compare with, drawn as dashed outlines", reference.poses.len());
+            let details =
+                format!("{} poses to compare with, drawn as dashed outlines", reference.poses.len());
             if ui.checkbox(&mut visible, text).on_hover_text(details).changed() {
                 commands.push(Command::SetReferenceVisible { name: name.clone(), visible });
             }
@@ -143,7 +151,11 @@ pub fn overlay(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
         commands.push(Command::SetOverlayOpacity(percent / 100.0));
     }
     let mut outline = session.look().outline;
-    if ui.checkbox(&mut outline, "silhouette outline").on_hover_text(CommandId::ToggleOutline.info().tooltip).changed() {
+    if ui
+        .checkbox(&mut outline, "silhouette outline")
+        .on_hover_text(CommandId::ToggleOutline.info().tooltip)
+        .changed()
+    {
         commands.push(Command::Run(CommandId::ToggleOutline));
     }
 }
@@ -155,8 +167,10 @@ fn row_button(ui: &mut Ui, icon: Icon, label: &str) -> bool {
 /// A name that fills the row, and can be chosen.
 fn name_button(ui: &mut Ui, selected: bool, text: RichText, room_for_buttons: f32) -> egui::Response {
     let width = (ui.available_width() - room_for_buttons).max(40.0);
-    ui.allocate_ui_with_layout(Vec2::new(width, 22.0), Layout::left_to_right(Align::Center).with_main_justify(true), |ui| {
-        ui.add(Button::selectable(selected, (text, egui::Atom::grow())).truncate())
-    })
+    ui.allocate_ui_with_layout(
+        Vec2::new(width, 22.0),
+        Layout::left_to_right(Align::Center).with_main_justify(true),
+        |ui| ui.add(Button::selectable(selected, (text, egui::Atom::grow())).truncate()),
+    )
     .inner
 }

@@ -10,7 +10,8 @@ pub fn pressed_commands(input: &mut egui::InputState) -> Vec<CommandId> {
     input.events.retain(|event| {
         let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return true };
         let command = COMMANDS.iter().find(|info| {
-            info.shortcut.is_some_and(|shortcut| matches(shortcut, *key, physical_key.unwrap_or(*key), *modifiers))
+            info.shortcut
+                .is_some_and(|shortcut| matches(shortcut, *key, physical_key.unwrap_or(*key), *modifiers))
         });
         pressed.extend(command.map(|info| info.id));
         command.is_none()

@@ -1,6 +1,8 @@
 //! Colours, sizes and spacing: one calm dark theme, one accent.
 
-use egui::{Color32, CornerRadius, FontFamily, FontId, Frame, Margin, RichText, Stroke, TextStyle, Theme, Vec2};
+use egui::{
+    Color32, CornerRadius, FontFamily, FontId, Frame, Margin, RichText, Stroke, TextStyle, Theme, Vec2,
+};
 
 use crate::scene::Rgb;
 
@@ -61,7 +63,13 @@ fn visuals() -> egui::Visuals {
     visuals.selection.stroke = Stroke::new(1.0, Color32::WHITE);
     let radius = CornerRadius::same(6);
     let widgets = &mut visuals.widgets;
-    for state in [&mut widgets.noninteractive, &mut widgets.inactive, &mut widgets.hovered, &mut widgets.active, &mut widgets.open] {
+    for state in [
+        &mut widgets.noninteractive,
+        &mut widgets.inactive,
+        &mut widgets.hovered,
+        &mut widgets.active,
+        &mut widgets.open,
+    ] {
         state.corner_radius = radius;
         state.expansion = 0.0;
     }
@@ -113,5 +121,6 @@ pub fn color32(Rgb([red, green, blue]): Rgb) -> Color32 {
 
 /// A button that stands out: the one thing to do next.
 pub fn primary_button(text: &str) -> egui::Button<'static> {
-    egui::Button::new(RichText::new(text.to_owned()).strong().color(Color32::WHITE)).fill(Color32::from_rgb(38, 100, 190))
+    egui::Button::new(RichText::new(text.to_owned()).strong().color(Color32::WHITE))
+        .fill(Color32::from_rgb(38, 100, 190))
 }

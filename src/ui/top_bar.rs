@@ -79,7 +79,12 @@ fn tooltip(info: &CommandInfo) -> String {
 }
 
 fn status(ui: &mut Ui, session: &Session, around: &Surroundings<'_>, asked: &mut Asked) {
-    if around.update_ready && ui.add(theme::primary_button("Update")).on_hover_text("A newer PinPose is ready. Your work is saved and comes back after the reload.").clicked() {
+    if around.update_ready
+        && ui
+            .add(theme::primary_button("Update"))
+            .on_hover_text("A newer PinPose is ready. Your work is saved and comes back after the reload.")
+            .clicked()
+    {
         asked.apply_update = true;
     }
     if let Some(busy) = &around.busy {

@@ -24,19 +24,27 @@ pub struct ViewportPlace {
 impl ViewportPlace {
     /// The size in physical pixels.
     pub fn size_px(&self) -> [u32; 2] {
-        [self.rect.width(), self.rect.height()].map(|points| (points * self.pixels_per_point).round().max(1.0) as u32)
+        [self.rect.width(), self.rect.height()]
+            .map(|points| (points * self.pixels_per_point).round().max(1.0) as u32)
     }
 
     fn corner_px(&self) -> [u32; 2] {
-        [self.rect.left(), self.rect.top()].map(|points| (points * self.pixels_per_point).round().max(0.0) as u32)
+        [self.rect.left(), self.rect.top()]
+            .map(|points| (points * self.pixels_per_point).round().max(0.0) as u32)
     }
 }
 
-pub fn draw(ui: &mut Ui, session: &Session, around: &Surroundings<'_>, commands: &mut Vec<Command>) -> ViewportPlace {
+pub fn draw(
+    ui: &mut Ui,
+    session: &Session,
+    around: &Surroundings<'_>,
+    commands: &mut Vec<Command>,
+) -> ViewportPlace {
     let pixels_per_point = ui.ctx().pixels_per_point();
     // Whole pixels, so that one texel of the picture is one pixel of the screen.
     let snap = |position: egui::Pos2| {
-        egui::pos2((position.x * pixels_per_point).round(), (position.y * pixels_per_point).round()) / pixels_per_point
+        egui::pos2((position.x * pixels_per_point).round(), (position.y * pixels_per_point).round())
+            / pixels_per_point
     };
     let available = ui.max_rect();
     let rect = egui::Rect::from_min_max(snap(available.min), snap(available.max));
@@ -100,7 +108,13 @@ fn note(ui: &Ui, position: egui::Pos2, anchor: Align2, text: &str) {
 }
 
 /// One line that says what to do next, where that may not be clear.
-fn hints(ui: &Ui, rect: egui::Rect, session: &Session, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
+fn hints(
+    ui: &Ui,
+    rect: egui::Rect,
+    session: &Session,
+    around: &Surroundings<'_>,
+    commands: &mut Vec<Command>,
+) {
     let scene = session.scene();
     let photo = session.photo();
     let selected = session.selected().and_then(|id| scene.object(id));
@@ -108,7 +122,9 @@ fn hints(ui: &Ui, rect: egui::Rect, session: &Session, around: &Surroundings<'_>
     let mut offer_place = None;
     let text = match (photo, selected, placed) {
         (None, _, _) => "Now drop a photo".to_owned(),
-        (Some(_), _, _) if scene.objects.is_empty() => "Now drop the mesh of the object (PLY, OBJ, GLB)".to_owned(),
+        (Some(_), _, _) if scene.objects.is_empty() => {
+            "Now drop the mesh of the object (PLY, OBJ, GLB)".to_owned()
+        }
         (Some(photo), _, _) if scene.objects_in(photo.id).next().is_none() && selected.is_none() => {
             "Nothing is placed in this photo: choose an object in the list".to_owned()
         }
@@ -125,9 +141,12 @@ fn hints(ui: &Ui, rect: egui::Rect, session: &Session, around: &Surroundings<'_>
         return;
     }
     let position = rect.center_top() + Vec2::new(0.0, 14.0);
-    Area::new(Id::unique("hint")).order(Order::Middle).pivot(Align2::CENTER_TOP).fixed_pos(position).interactable(offer_place.is_some()).show(
-        ui.ctx(),
-        |ui| {
+    Area::new(Id::unique("hint"))
+        .order(Order::Middle)
+        .pivot(Align2::CENTER_TOP)
+        .fixed_pos(position)
+        .interactable(offer_place.is_some())
+        .show(ui.ctx(), |ui| {
             theme::overlay_frame().show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(text));
@@ -138,8 +157,7 @@ fn hints(ui: &Ui, rect: egui::Rect, session: &Session, around: &Surroundings<'_>
                     }
                 });
             });
-        },
-    );
+        });
 }
 
 struct SceneCallback {

@@ -16,13 +16,14 @@ pub fn draw(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>)
     // The whole ground takes the click too: a large target for the obvious thing.
     let ground = ui.interact(rect, Id::unique("welcome ground"), Sense::click());
     drop_border(ui, rect.shrink(18.0), around.files_hover);
-    Area::new(Id::unique("welcome")).order(Order::Middle).fixed_pos(rect.center()).pivot(Align2::CENTER_CENTER).show(
-        ui.ctx(),
-        |ui| {
+    Area::new(Id::unique("welcome"))
+        .order(Order::Middle)
+        .fixed_pos(rect.center())
+        .pivot(Align2::CENTER_CENTER)
+        .show(ui.ctx(), |ui| {
             ui.set_width(430.0);
             ui.vertical_centered(|ui| card(ui, around, commands));
-        },
-    );
+        });
     if ground.clicked() {
         commands.push(Command::Run(CommandId::OpenFiles));
     }
@@ -50,7 +51,11 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
         }
     });
     ui.add_space(12.0);
-    ui.label(RichText::new("Also: poses you saved (JSON), a workspace (zip), a Vision6D ground truth").small().weak());
+    ui.label(
+        RichText::new("Also: poses you saved (JSON), a workspace (zip), a Vision6D ground truth")
+            .small()
+            .weak(),
+    );
     if let Some(busy) = &around.busy {
         ui.add_space(8.0);
         ui.horizontal(|ui| {
@@ -66,7 +71,13 @@ fn step(ui: &mut Ui, number: &str, what: &str, how: &str) {
         ui.add_space(64.0);
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(24.0), Sense::hover());
         ui.painter().circle_filled(rect.center(), 11.0, Color32::from_rgb(40, 60, 92));
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, number, egui::FontId::proportional(13.0), Color32::WHITE);
+        ui.painter().text(
+            rect.center(),
+            Align2::CENTER_CENTER,
+            number,
+            egui::FontId::proportional(13.0),
+            Color32::WHITE,
+        );
         ui.label(RichText::new(what).strong());
         ui.label(RichText::new(how).weak());
     });
@@ -76,9 +87,16 @@ fn drop_border(ui: &Ui, rect: egui::Rect, hovered: bool) {
     let color = if hovered { theme::ACCENT } else { Color32::from_rgb(56, 61, 73) };
     let stroke = Stroke::new(if hovered { 2.0 } else { 1.5 }, color);
     if hovered {
-        ui.painter().rect(rect, CornerRadius::same(14), theme::ACCENT.gamma_multiply(0.08), stroke, StrokeKind::Inside);
+        ui.painter().rect(
+            rect,
+            CornerRadius::same(14),
+            theme::ACCENT.gamma_multiply(0.08),
+            stroke,
+            StrokeKind::Inside,
+        );
         return;
     }
-    let corners = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
+    let corners =
+        [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
     ui.painter().extend(egui::Shape::dashed_line(&corners, stroke, 8.0, 7.0));
 }

@@ -82,7 +82,16 @@ fn render_draws_masks_and_overlays_of_linemod() {
     let path = |name: &str| linemod.join(name).display().to_string();
     let files = [path("000019.png"), path("obj_000001.ply"), path("groud_truth.txt")];
     for kind in ["overlay", "mask", "depth"] {
-        let output = pinpose(&["render", &files[0], &files[1], &files[2], "--out", &out.display().to_string(), "--kind", kind]);
+        let output = pinpose(&[
+            "render",
+            &files[0],
+            &files[1],
+            &files[2],
+            "--out",
+            &out.display().to_string(),
+            "--kind",
+            kind,
+        ]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
     let overlay = image::open(out.join("000019_overlay.png")).unwrap().into_rgb8();

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use pinpose::formats::{
-    DOCUMENT_SCHEMA, Keep, PosesAs, classify, parse_text_or_archive, read_document, read_workspace, write_document,
-    write_workspace,
+    DOCUMENT_SCHEMA, Keep, PosesAs, classify, parse_text_or_archive, read_document, read_workspace,
+    write_document, write_workspace,
 };
 use pinpose::math::Pose;
 use pinpose::scene::PoseSource;
@@ -50,7 +50,8 @@ fn linemod_survives_a_workspace() {
     assert_eq!(workspace.files.len(), 20);
     let batch = crate::support::batch_of(&workspace.files, None);
     let mut opened = Session::default();
-    let opening = Opening { document: workspace.document, photos: batch.photos, meshes: batch.meshes, restored: true };
+    let opening =
+        Opening { document: workspace.document, photos: batch.photos, meshes: batch.meshes, restored: true };
     opened.apply(Command::Open(Box::new(opening)), NOW_MS).unwrap();
     assert_eq!(write_document(&opened.document(Keep::Everything)), write_document(&document));
     assert!(opened.undo_label().is_none());
@@ -70,7 +71,8 @@ fn exports_are_as_the_schema_says() {
             assert!(errors.is_empty(), "{errors:?}");
         }
     }
-    let mut wrong: serde_json::Value = serde_json::from_str(&write_document(&small_session().document(Keep::Everything))).unwrap();
+    let mut wrong: serde_json::Value =
+        serde_json::from_str(&write_document(&small_session().document(Keep::Everything))).unwrap();
     wrong["photos"][0]["sha256"] = "short".into();
     assert!(!validator.is_valid(&wrong), "the schema takes anything");
 }
@@ -84,12 +86,15 @@ fn an_untouched_pose_is_not_exported_as_an_annotation() {
 
 #[test]
 fn poses_without_their_files_wait_for_them() {
-    let exported = write_document(&with_pose(Pose::from_translation(DVec3::new(1.0, 2.0, 800.0))).document(Keep::Annotated));
+    let exported = write_document(
+        &with_pose(Pose::from_translation(DVec3::new(1.0, 2.0, 800.0))).document(Keep::Annotated),
+    );
     let mut session = Session::default();
     drop_files(&mut session, &[text_file("poses.json", &exported)], Some(PosesAs::Annotations));
     let missing: Vec<String> = session.missing_files().flat_map(|(_, files)| files.to_vec()).collect();
     assert_eq!(missing, ["photo.png", "box.obj"]);
-    let files = [crate::support::flat_photo("renamed.png", 640, 480), crate::support::box_mesh("renamed.obj")];
+    let files =
+        [crate::support::flat_photo("renamed.png", 640, 480), crate::support::box_mesh("renamed.obj")];
     drop_files(&mut session, &files, None);
     assert_eq!(only_pose(&session).translation_mm, DVec3::new(1.0, 2.0, 800.0));
     assert_eq!(session.missing_files().count(), 0);
@@ -124,7 +129,7 @@ fn every_truncation_and_many_flips_of_a_workspace_are_errors_or_scenes() {
         damaged[position] ^= 0x55;
         // An error or a scene; what must not happen is a panic.
         let _ = read_workspace(&damaged);
-        damaged[position] = zip[position];
+        damaged[position] ^= 0x55;
     }
     let text = write_document(&session.document(Keep::Everything));
     for length in 0..text.len() {

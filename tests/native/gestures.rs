@@ -81,7 +81,8 @@ fn alt_is_ten_times_finer() {
     let grabbed = hand.middle();
     let point_object = pick_all(hand.session.scene(), photo, grabbed)[0].point_object_mm;
     hand.drag(Button::Left, grabbed, grabbed + DVec2::new(40.0, -20.0));
-    let seen = hand.session.photo().unwrap().camera.project(hand.pose().transform_point(point_object)).unwrap();
+    let seen =
+        hand.session.photo().unwrap().camera.project(hand.pose().transform_point(point_object)).unwrap();
     assert!(seen.distance(grabbed + DVec2::new(4.0, -2.0)) < 1e-9);
 }
 

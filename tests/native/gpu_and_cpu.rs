@@ -55,12 +55,19 @@ fn poses_around(truth: &Pose) -> [Pose; 5] {
     let nearer = truth.translated(truth.translation_mm * -0.4);
     let farther = truth.translated(truth.translation_mm * 0.5);
     let aside = truth.translated(DVec3::new(-truth.translation_mm.x - 560.0, 0.0, 0.0));
-    [*truth, turn(0.5, -0.2), turn(-1.1, 0.9), if aside.translation_mm.z > 900.0 { aside } else { nearer }, farther]
+    [
+        *truth,
+        turn(0.5, -0.2),
+        turn(-1.1, 0.9),
+        if aside.translation_mm.z > 900.0 { aside } else { nearer },
+        farther,
+    ]
 }
 
 fn compare(renderer: &mut Renderer, camera: &Intrinsics, mesh: &Arc<MeshAsset>, pose: Pose) -> f64 {
     let region = PixelRegion::of_camera(camera);
-    let raster = rasterize(camera, &[RasterItem { mesh: &mesh.mesh, camera_from_object: pose, id: 1 }], region);
+    let raster =
+        rasterize(camera, &[RasterItem { mesh: &mesh.mesh, camera_from_object: pose, id: 1 }], region);
     let picture = picture(*camera, ImageRect::of_photo(camera.width, camera.height), mesh.clone(), pose);
     let pending = renderer.draw_and_read(&picture, [camera.width, camera.height], Layer::Ids);
     let ids = pending.wait(renderer.gpu()).unwrap();
@@ -72,7 +79,8 @@ fn compare(renderer: &mut Renderer, camera: &Intrinsics, mesh: &Arc<MeshAsset>, 
 }
 
 fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose) -> Picture {
-    let item = Item { mesh, camera_from_object: pose, color: Rgb([255; 3]), opacity: 1.0, id: 1, selected: false };
+    let item =
+        Item { mesh, camera_from_object: pose, color: Rgb([255; 3]), opacity: 1.0, id: 1, selected: false };
     Picture {
         camera,
         rect,
@@ -89,7 +97,8 @@ fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose
 #[test]
 fn small_discs_are_drawn_where_their_centres_project() {
     let Some(mut renderer) = renderer() else { return };
-    let camera = Intrinsics { skew: 0.8, ..Intrinsics::pinhole(572.4114, 591.57043, 305.2611, 251.04899, 640, 480) };
+    let camera =
+        Intrinsics { skew: 0.8, ..Intrinsics::pinhole(572.4114, 591.57043, 305.2611, 251.04899, 640, 480) };
     let mut worst: f64 = 0.0;
     for (u, v) in [(60.3, 40.7), (320.0, 240.0), (501.5, 130.25), (611.11, 455.9), (33.3, 402.5)] {
         let pixel = DVec2::new(u, v);
@@ -98,8 +107,15 @@ fn small_discs_are_drawn_where_their_centres_project() {
         for zoom in [1.0, 8.0] {
             let size = DVec2::new(320.0, 240.0);
             // A view whose corner is at no whole pixel.
-            let rect = ImageRect { min: pixel - size / (2.3 * zoom), max: pixel - size / (2.3 * zoom) + size / zoom };
-            let pending = renderer.draw_and_read(&picture(camera, rect, disc.clone(), pose), [320, 240], Layer::Picture);
+            let rect = ImageRect {
+                min: pixel - size / (2.3 * zoom),
+                max: pixel - size / (2.3 * zoom) + size / zoom,
+            };
+            let pending = renderer.draw_and_read(
+                &picture(camera, rect, disc.clone(), pose),
+                [320, 240],
+                Layer::Picture,
+            );
             let pixels = pending.wait(renderer.gpu()).unwrap();
             let centroid = centroid(&pixels.rgba, 320);
             // A pixel's centre is half a target pixel from its corner; the `image` frame begins at `rect.min`.
@@ -124,7 +140,13 @@ fn disc(radius_mm: f32) -> Arc<MeshAsset> {
     let triangles = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
     let mesh = Mesh::new(MeshData { positions_mm, triangles, ..MeshData::default() }).unwrap();
     let bvh = Bvh::build(&mesh);
-    Arc::new(MeshAsset { file_name: "disc".to_owned(), sha256: Sha256::of(b"disc"), bytes: Arc::from([]), mesh, bvh })
+    Arc::new(MeshAsset {
+        file_name: "disc".to_owned(),
+        sha256: Sha256::of(b"disc"),
+        bytes: Arc::from([]),
+        mesh,
+        bvh,
+    })
 }
 
 /// The brightness-weighted mean of pixel coordinates; the disc has one brightness, so that is its coverage.

@@ -39,7 +39,9 @@ fn every_exif_orientation_stands_upright() {
     let Some(folder) = data_folder("images_misc") else { return };
     let landscapes: Vec<PathBuf> = files_below(&folder.join("exif-orientation-examples"))
         .into_iter()
-        .filter(|path| path.to_string_lossy().contains("Landscape_") && path.extension().is_some_and(|e| e == "jpg"))
+        .filter(|path| {
+            path.to_string_lossy().contains("Landscape_") && path.extension().is_some_and(|e| e == "jpg")
+        })
         .collect();
     assert!(landscapes.len() >= 8, "{landscapes:?}");
     for path in landscapes {

@@ -50,7 +50,8 @@ fn imports_only_go_down() {
         for (line, named) in named_rooms(&text) {
             let Some(named_rank) = self::rank(&named) else { continue };
             let platform_from_below = named == "platform" && rank < 8;
-            let is_render_scope = room != "render" || ["math", "photo", "mesh", "scene", "raster"].contains(&named.as_str());
+            let is_render_scope =
+                room != "render" || ["math", "photo", "mesh", "scene", "raster"].contains(&named.as_str());
             if named != room && (named_rank >= rank || platform_from_below || !is_render_scope) {
                 violations.push(format!("{}:{line}: {room} names {named}", path.display()));
             }
@@ -111,7 +112,10 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
 /// Lines of the program itself: tests within a file may name what they like.
 fn code_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let program = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]"));
-    program.enumerate().map(|(index, line)| (index + 1, line)).filter(|(_, line)| !line.trim_start().starts_with("//"))
+    program
+        .enumerate()
+        .map(|(index, line)| (index + 1, line))
+        .filter(|(_, line)| !line.trim_start().starts_with("//"))
 }
 
 /// Rooms that a file names as `crate::room`.
@@ -134,7 +138,9 @@ fn names(line: &str, name: &str) -> bool {
         let after = line[position + name.len()..].chars().next();
         let whole = !before.is_some_and(is_word) && !after.is_some_and(is_word);
         // `crate::egui`, a field or a text is not the library.
-        whole && (after == Some(':') || name.contains("::") || name.chars().any(char::is_uppercase)) && before != Some('"')
+        whole
+            && (after == Some(':') || name.contains("::") || name.chars().any(char::is_uppercase))
+            && before != Some('"')
     })
 }
 

@@ -42,7 +42,8 @@ fn projected(scene: &Scene, photo: &str, object: &str) -> ImageRect {
     let object = scene.objects.iter().find(|candidate| candidate.name == object).unwrap();
     let pose = scene.annotation(photo.id, object.id).unwrap().camera_from_object;
     let vertices = object.mesh.mesh.positions_mm().iter();
-    let pixels: Vec<DVec2> =
-        vertices.map(|vertex| photo.camera.project(pose.transform_point(vertex.as_dvec3())).unwrap()).collect();
+    let pixels: Vec<DVec2> = vertices
+        .map(|vertex| photo.camera.project(pose.transform_point(vertex.as_dvec3())).unwrap())
+        .collect();
     ImageRect::around(pixels).unwrap()
 }

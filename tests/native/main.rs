@@ -1,5 +1,7 @@
 //! Native tests: one binary, a module per question.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
 mod cli;
 mod documents;
 mod gestures;

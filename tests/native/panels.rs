@@ -43,7 +43,9 @@ fn harness(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>) {
 fn an_empty_scene_says_what_to_do() {
     let (mut harness, _) = harness(Session::default());
     harness.run();
-    for text in ["Drop your files here", "A photo", "A 3D mesh of the object", "Open files…", "Try the example"] {
+    for text in
+        ["Drop your files here", "A photo", "A 3D mesh of the object", "Open files…", "Try the example"]
+    {
         harness.get_by_label(text);
     }
 }

@@ -44,7 +44,8 @@ fn a_new_object_covers_a_third_of_the_photo() {
 
 #[test]
 fn files_may_come_in_any_order() {
-    let files = [flat_photo("photo.png", 640, 480), box_mesh("box.obj"), text_file("camera.json", CAMERA_JSON)];
+    let files =
+        [flat_photo("photo.png", 640, 480), box_mesh("box.obj"), text_file("camera.json", CAMERA_JSON)];
     for order in [[0, 1, 2], [2, 1, 0], [1, 0, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1]] {
         let mut session = Session::default();
         for index in order {
@@ -78,7 +79,10 @@ fn cancelling_a_gesture_leaves_no_trace() {
     let before = session.scene().clone();
     let (photo, object, _) = session.selected_annotation().unwrap();
     run(&mut session, Command::BeginGesture("Move"));
-    run(&mut session, Command::Drag { photo, object, camera_from_object: Pose::from_translation(DVec3::Z * 400.0) });
+    run(
+        &mut session,
+        Command::Drag { photo, object, camera_from_object: Pose::from_translation(DVec3::Z * 400.0) },
+    );
     run(&mut session, Command::CancelGesture);
     assert_eq!(*session.scene(), before);
     assert_eq!(session.undo_label(), Some("Add files"));
@@ -129,7 +133,8 @@ fn changing_the_camera_marks_poses_and_moves_untouched_ones() {
     assert_eq!(annotation.camera_from_object, posed);
     assert!(annotation.camera_changed);
     let zero = Intrinsics::pinhole(0.0, 610.0, 320.0, 240.0, 640, 480);
-    let refused = session.apply(Command::SetCamera { photo, camera: zero, origin: CameraOrigin::Typed }, NOW_MS);
+    let refused =
+        session.apply(Command::SetCamera { photo, camera: zero, origin: CameraOrigin::Typed }, NOW_MS);
     assert!(refused.unwrap_err().to_string().contains("focal length"));
 }
 

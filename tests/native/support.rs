@@ -70,7 +70,8 @@ pub fn drop_files(session: &mut Session, files: &[NamedFile], poses_as: Option<P
 /// All of linemod10, with the truth as annotations.
 pub fn linemod_session() -> Option<Session> {
     let folder = data_folder("linemod10")?;
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| {
         let extension = path.extension().and_then(|extension| extension.to_str());
         matches!(extension, Some("png" | "ply")) || path.ends_with("groud_truth.txt")
@@ -108,12 +109,14 @@ pub fn text_file(name: &str, text: &str) -> NamedFile {
 }
 
 /// A camera whose numbers are all different, with its centre off the middle.
-pub const CAMERA_JSON: &str = r#"{"fx": 520.5, "fy": 533.25, "cx": 301.75, "cy": 222.5, "width": 640, "height": 480}"#;
+pub const CAMERA_JSON: &str =
+    r#"{"fx": 520.5, "fy": 533.25, "cx": 301.75, "cy": 222.5, "width": 640, "height": 480}"#;
 
 /// One photo, one box, one camera.
 pub fn small_session() -> Session {
     let mut session = Session::default();
-    let files = [flat_photo("photo.png", 640, 480), box_mesh("box.obj"), text_file("camera.json", CAMERA_JSON)];
+    let files =
+        [flat_photo("photo.png", 640, 480), box_mesh("box.obj"), text_file("camera.json", CAMERA_JSON)];
     drop_files(&mut session, &files, None);
     session
 }

@@ -38,7 +38,11 @@ pub struct Jobs {
 impl Jobs {
     pub fn new(ctx: &egui::Context) -> Self {
         let ctx = ctx.clone();
-        Self { background: Background::new(run_job, move || ctx.request_repaint()), next_id: 0, files: HashMap::new() }
+        Self {
+            background: Background::new(run_job, move || ctx.request_repaint()),
+            next_id: 0,
+            files: HashMap::new(),
+        }
     }
 
     pub fn submit(&mut self, kind: JobKind, file: NamedFile) -> u64 {
@@ -94,8 +98,12 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
     let name = String::from_utf8(request.bytes()?.to_vec()).ok()?;
     let file = NamedFile { name, bytes: Arc::from(request.bytes()?) };
     Some(match kind {
-        0 => read_photo(&file).map(|(asset, pixels)| write_photo(&asset, &pixels)).map_err(|error| error.to_string()),
-        _ => read_mesh(&file).map(|(asset, warnings)| write_mesh(&asset, &warnings)).map_err(|error| error.to_string()),
+        0 => read_photo(&file)
+            .map(|(asset, pixels)| write_photo(&asset, &pixels))
+            .map_err(|error| error.to_string()),
+        _ => read_mesh(&file)
+            .map(|(asset, warnings)| write_mesh(&asset, &warnings))
+            .map_err(|error| error.to_string()),
     })
 }
 

@@ -3,13 +3,17 @@
 use glam::DMat4;
 
 use super::{
-    CameraOriginEntry, Conventions, Document, ObjectEntry, PhotoEntry, PoseEntry, ReferenceEntry, ReferencePoseEntry,
-    SourceEntry, StateEntry, VERSION, ViewSettings,
+    CameraOriginEntry, Conventions, Document, ObjectEntry, PhotoEntry, PoseEntry, ReferenceEntry,
+    ReferencePoseEntry, SourceEntry, StateEntry, VERSION, ViewSettings,
 };
 use crate::formats::incoming::{IncomingReference, Look};
-use crate::formats::{FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose};
+use crate::formats::{
+    FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose,
+};
 use crate::math::{Distortion, Intrinsics, Pose};
-use crate::scene::{Annotation, AnnotationState, CameraOrigin, Object, Photo, PoseSource, Rgb, Scene, Sha256};
+use crate::scene::{
+    Annotation, AnnotationState, CameraOrigin, Object, Photo, PoseSource, Rgb, Scene, Sha256,
+};
 
 /// Which poses a document holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +85,8 @@ impl Document {
         let mut camera = Intrinsics::from_k_rows(&photo.k, photo.width, photo.height)
             .map_err(|error| FormatError::camera(format!("{place}.K"), error))?;
         camera.distortion = photo.distortion.map_or(Distortion::NONE, Distortion::from_array);
-        let camera = camera.checked().map_err(|error| FormatError::camera(format!("{place}.distortion"), error))?;
+        let camera =
+            camera.checked().map_err(|error| FormatError::camera(format!("{place}.distortion"), error))?;
         let poses = photo.poses.iter().enumerate();
         Ok(IncomingPhoto {
             key: content_key(&photo.sha256, &photo.file, place)?,
@@ -97,7 +102,10 @@ impl Document {
         let [x, y, z, _] = pose.camera_from_object;
         let rotation = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
         if rotation != pose.rotation || [x[3], y[3], z[3]] != pose.translation_mm {
-            return Err(FormatError::at(place, "R and t are not those of camera_from_object; which one is right?"));
+            return Err(FormatError::at(
+                place,
+                "R and t are not those of camera_from_object; which one is right?",
+            ));
         }
         Ok(IncomingPose {
             object: self.object_index(pose.object, place)?,
@@ -108,10 +116,15 @@ impl Document {
         })
     }
 
-    fn incoming_reference(&self, reference: &ReferenceEntry, place: &str) -> Result<IncomingReference, FormatError> {
+    fn incoming_reference(
+        &self,
+        reference: &ReferenceEntry,
+        place: &str,
+    ) -> Result<IncomingReference, FormatError> {
         let poses = reference.poses.iter().map(|pose| {
             let photo = self.photos.iter().position(|photo| photo.id == pose.photo);
-            let photo = photo.ok_or_else(|| FormatError::at(place, format!("no photo has the id {}", pose.photo)))?;
+            let photo =
+                photo.ok_or_else(|| FormatError::at(place, format!("no photo has the id {}", pose.photo)))?;
             let object = self.object_index(pose.object, place)?;
             Ok((photo, object, read_pose(&pose.camera_from_object, place)?))
         });
@@ -195,8 +208,12 @@ impl ObjectEntry {
     fn to_incoming(&self, place: &str) -> Result<IncomingObject, FormatError> {
         let mesh_from_file = DMat4::from_cols_array_2d(&self.mesh_from_file).transpose();
         let determinant = mesh_from_file.determinant();
-        if !mesh_from_file.is_finite() || determinant.abs() < 1e-30 || mesh_from_file.row(3) != glam::DVec4::W {
-            return Err(FormatError::at(format!("{place}.mesh_from_file"), "an invertible affine 4×4 expected"));
+        if !mesh_from_file.is_finite() || determinant.abs() < 1e-30 || mesh_from_file.row(3) != glam::DVec4::W
+        {
+            return Err(FormatError::at(
+                format!("{place}.mesh_from_file"),
+                "an invertible affine 4×4 expected",
+            ));
         }
         Ok(IncomingObject {
             key: content_key(&self.mesh_sha256, &self.mesh_file, place)?,
@@ -213,12 +230,14 @@ impl ObjectEntry {
 }
 
 fn read_pose(rows: &[[f64; 4]; 4], place: &str) -> Result<Pose, FormatError> {
-    let pose = Pose::from_rows(rows).map_err(|error| FormatError::pose(format!("{place}.camera_from_object"), error))?;
+    let pose = Pose::from_rows(rows)
+        .map_err(|error| FormatError::pose(format!("{place}.camera_from_object"), error))?;
     Ok(pose.0)
 }
 
 fn content_key(sha256: &str, file_name: &str, place: &str) -> Result<FileKey, FormatError> {
-    let sha256: Sha256 = sha256.parse().map_err(|reason| FormatError::at(format!("{place}.sha256"), reason))?;
+    let sha256: Sha256 =
+        sha256.parse().map_err(|reason| FormatError::at(format!("{place}.sha256"), reason))?;
     Ok(FileKey::Content { sha256, file_name: file_name.to_owned() })
 }
 
@@ -226,7 +245,9 @@ fn read_color(text: &str, place: &str) -> Result<Rgb, FormatError> {
     let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
     let value = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
     let [_, red, green, blue] = value
-        .ok_or_else(|| FormatError::at(format!("{place}.color"), format!("#rrggbb expected, found \"{text}\"")))?
+        .ok_or_else(|| {
+            FormatError::at(format!("{place}.color"), format!("#rrggbb expected, found \"{text}\""))
+        })?
         .to_be_bytes();
     Ok(Rgb([red, green, blue]))
 }

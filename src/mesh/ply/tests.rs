@@ -143,7 +143,7 @@ proptest! {
     fn every_encoding_reads_back(sample in sample()) {
         for encoding in ENCODINGS {
             let data = parse(&sample.write(encoding)).unwrap().data;
-            let positions: Vec<[f32; 3]> = data.positions_mm.iter().map(|p| p.to_array()).collect();
+            let positions: Vec<[f32; 3]> = data.positions_mm.iter().map(glam::Vec3::to_array).collect();
             prop_assert_eq!(&positions, &sample.positions);
             let colors: Vec<[u8; 3]> = data.colors.unwrap().iter().map(|&[r, g, b, _]| [r, g, b]).collect();
             prop_assert_eq!(&colors, &sample.colors);

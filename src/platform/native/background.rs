@@ -15,7 +15,8 @@ impl Background {
         let (outgoing, replies) = channel();
         std::thread::spawn(move || {
             while let Ok((id, request)) = incoming.recv() {
-                let reply = std::panic::catch_unwind(|| run(&request)).map_err(|_| "a job crashed".to_owned());
+                let reply =
+                    std::panic::catch_unwind(|| run(&request)).map_err(|_| "a job crashed".to_owned());
                 if outgoing.send((id, reply)).is_err() {
                     break;
                 }

@@ -51,7 +51,11 @@ pub fn download(file_name: &str, bytes: &[u8]) -> Result<(), String> {
 fn offer_download(file_name: &str, bytes: &[u8]) -> Result<(), JsValue> {
     let parts = Array::of1(&Uint8Array::from(bytes));
     let options = web_sys::BlobPropertyBag::new();
-    options.set_type(if file_name.ends_with(".json") { "application/json" } else { "application/octet-stream" });
+    options.set_type(if file_name.ends_with(".json") {
+        "application/json"
+    } else {
+        "application/octet-stream"
+    });
     let blob = web_sys::Blob::new_with_u8_array_sequence_and_options(&parts, &options)?;
     let url = web_sys::Url::create_object_url_with_blob(&blob)?;
     let document = web_sys::window().and_then(|window| window.document()).ok_or("the page is gone")?;

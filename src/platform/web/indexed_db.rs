@@ -34,12 +34,16 @@ struct State {
 impl Storage for IndexedDb {
     fn load(&self) -> StorageFuture<Option<Saved>> {
         let state = self.state.clone();
-        Box::pin(async move { load(&state).await.map_err(|error| format!("the saved scene cannot be read: {error}")) })
+        Box::pin(async move {
+            load(&state).await.map_err(|error| format!("the saved scene cannot be read: {error}"))
+        })
     }
 
     fn save(&self, saved: Saved) -> StorageFuture<()> {
         let state = self.state.clone();
-        Box::pin(async move { save(&state, saved).await.map_err(|error| format!("the scene cannot be saved: {error}")) })
+        Box::pin(async move {
+            save(&state, saved).await.map_err(|error| format!("the scene cannot be saved: {error}"))
+        })
     }
 }
 
@@ -83,7 +87,10 @@ async fn save(state: &RefCell<State>, saved: Saved) -> Result<(), idb::Error> {
     let transaction = database.transaction(&[DOCUMENTS, ASSETS], TransactionMode::ReadWrite)?;
     let assets = transaction.object_store(ASSETS)?;
     for asset in saved.assets.iter().filter(|asset| !stored.contains(&asset.key)) {
-        let value = object(&[("name", asset.file_name.as_str().into()), ("bytes", Uint8Array::from(&*asset.bytes).into())]);
+        let value = object(&[
+            ("name", asset.file_name.as_str().into()),
+            ("bytes", Uint8Array::from(&*asset.bytes).into()),
+        ]);
         assets.put(&value, Some(&asset.key.as_str().into()))?.await?;
     }
     for key in stored.difference(&needed) {
