@@ -84,6 +84,12 @@ impl Autosave {
         }
     }
 
+    /// The session is what is in storage: it was just brought back from there.
+    pub fn mark_saved(&mut self, session: &Session) {
+        self.saved_revision = session.revision();
+        self.seen_revision = self.saved_revision;
+    }
+
     pub fn state(&self, session: &Session) -> Saving {
         match &self.failure {
             Some(reason) => Saving::Failed(reason.clone()),

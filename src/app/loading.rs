@@ -281,16 +281,22 @@ impl PinPose {
         }
         for mut load in complete {
             load.sort();
-            let command = match load.opening.take() {
-                Some((document, origin)) => Command::Open(Box::new(Opening {
+            let opening = load.opening.take();
+            let restored = opening.as_ref().is_some_and(|(_, origin)| *origin == Origin::Storage);
+            let command = match opening {
+                Some((document, _)) => Command::Open(Box::new(Opening {
                     document,
                     photos: load.batch.photos,
                     meshes: load.batch.meshes,
-                    restored: origin == Origin::Storage,
+                    restored,
                 })),
                 None => Command::Import(Box::new(load.batch)),
             };
             self.apply(command);
+            if restored {
+                // What could not be read stays in storage until the user changes something.
+                self.autosave.mark_saved(&self.session);
+            }
             load.warnings.into_iter().for_each(|warning| self.notify(Notice::warning(warning)));
             load.problems.iter().for_each(|problem| self.notify(Notice::error(problem.clone())));
             if let Some(reply) = load.reply {

@@ -6,6 +6,7 @@
 mod answers;
 mod autosave;
 mod effects;
+mod events;
 mod input;
 mod jobs;
 mod loading;
@@ -38,6 +39,7 @@ pub struct PinPose {
     calls: PageCalls,
     answers: answers::Answers,
     performance: performance::Performance,
+    events: events::Events,
     /// Read at the start of each frame: where the pointer is over the viewport, in its physical pixels.
     pointer: Option<glam::DVec2>,
 }
@@ -78,6 +80,7 @@ impl PinPose {
             calls: start.calls,
             answers: answers::Answers::default(),
             performance: performance::Performance::default(),
+            events: events::Events::default(),
             pointer: None,
         };
         if start.restore {
@@ -106,6 +109,7 @@ impl PinPose {
     }
 
     fn notify(&mut self, notice: Notice) {
+        platform::send_event("notice", &notice.text);
         self.ui_state.toasts.add(notice);
     }
 }
@@ -121,6 +125,7 @@ impl eframe::App for PinPose {
         self.take_gestures(ctx);
         self.want_pixels();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
+        self.send_events();
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

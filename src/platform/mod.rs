@@ -14,7 +14,7 @@ mod web;
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
     Background, default_storage, download, fetch_example, navigation_ms, now_ms, page_parameter,
-    page_version, pick_files, reload, report_crash, spawn, update_offer, wasm_bytes,
+    page_version, pick_files, reload, report_crash, send_event, spawn, update_offer, wasm_bytes,
 };
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
@@ -23,8 +23,8 @@ pub use storage::{MemoryStorage, Saved, SavedAsset, Storage, StorageFuture};
 #[cfg(target_arch = "wasm32")]
 pub use web::{
     Background, default_storage, download, fetch_example, install_panic_hook, navigation_ms, now_ms,
-    page_parameter, page_version, pick_files, reload, report_crash, spawn, update_offer, wasm_bytes,
-    watch_for_updates,
+    page_parameter, page_version, pick_files, reload, report_crash, send_event, spawn, update_offer,
+    wasm_bytes, watch_for_updates,
 };
 
 /// A file that the user picked or dropped.

@@ -95,7 +95,11 @@ impl Linemod {
         let case: Case = serde_json::from_slice(&File::read(&folder.join("case.json"))?.bytes)?;
         let sample_of = |frame: Frame| {
             let [placed] = <[Placed; 1]>::try_from(frame.objects).ok()?;
-            Some(Sample { photo: frame.image, mesh: placed.mesh, camera_from_object: placed.camera_from_object })
+            Some(Sample {
+                photo: frame.image,
+                mesh: placed.mesh,
+                camera_from_object: placed.camera_from_object,
+            })
         };
         let samples = case.frames.into_iter().map(sample_of).collect::<Option<Vec<Sample>>>();
         Ok(Linemod { folder, samples: samples.context("A frame without its one object")? })

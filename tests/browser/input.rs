@@ -19,7 +19,6 @@ pub enum Button {
 pub enum Modifier {
     Alt,
     Control,
-    Meta,
     Shift,
 }
 
@@ -47,7 +46,6 @@ impl Modifier {
         match self {
             Modifier::Alt => "Alt",
             Modifier::Control => "Control",
-            Modifier::Meta => "Meta",
             Modifier::Shift => "Shift",
         }
     }
@@ -56,7 +54,6 @@ impl Modifier {
         match self {
             Modifier::Alt => 1,
             Modifier::Control => 2,
-            Modifier::Meta => 4,
             Modifier::Shift => 8,
         }
     }
@@ -65,6 +62,11 @@ impl Modifier {
 impl Page {
     pub fn mouse_move(&mut self, to: Point) -> anyhow::Result<()> {
         self.mouse("mouseMoved", to, json!({ "button": "none" }))
+    }
+
+    /// A step of a drag that is put together by hand.
+    pub fn mouse_move_holding(&mut self, to: Point, button: Button) -> anyhow::Result<()> {
+        self.move_holding(to, button, &[])
     }
 
     pub fn mouse_down(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
@@ -95,15 +97,13 @@ impl Page {
         modifiers: &[Modifier],
     ) -> anyhow::Result<()> {
         ensure!(steps > 0, "A drag without steps");
-        let bits = bits(modifiers);
         self.hold(modifiers, |page| {
             page.mouse_move(from)?;
             page.press(from, button, 1, modifiers)?;
             for step in 1..=steps {
                 let share = f64::from(step) / f64::from(steps);
                 let at = (from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share);
-                let held = json!({ "button": button.name(), "buttons": button.bit(), "modifiers": bits });
-                page.mouse("mouseMoved", at, held)?;
+                page.move_holding(at, button, modifiers)?;
             }
             page.release(to, button, 1, modifiers)
         })
@@ -134,15 +134,6 @@ impl Page {
         })
     }
 
-    /// Types into whatever has the focus, one character after the other.
-    pub fn type_text(&mut self, text: &str) -> anyhow::Result<()> {
-        for character in text.chars() {
-            self.call("Input.insertText", json!({ "text": character.to_string() }))?;
-            self.next_frame()?;
-        }
-        Ok(())
-    }
-
     fn clicks(
         &mut self,
         at: Point,
@@ -155,6 +146,11 @@ impl Page {
             page.press(at, button, count, modifiers)?;
             page.release(at, button, count, modifiers)
         })
+    }
+
+    fn move_holding(&mut self, to: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        let held = json!({ "button": button.name(), "buttons": button.bit(), "modifiers": bits(modifiers) });
+        self.mouse("mouseMoved", to, held)
     }
 
     fn press(&mut self, at: Point, button: Button, count: u32, modifiers: &[Modifier]) -> anyhow::Result<()> {
@@ -263,7 +259,6 @@ fn named_key(name: &str) -> Option<(&'static str, u32)> {
         "ArrowRight" => ("ArrowRight", 39),
         "ArrowDown" => ("ArrowDown", 40),
         "Delete" => ("Delete", 46),
-        "Meta" => ("MetaLeft", 91),
         "=" | "+" => ("Equal", 187),
         "," => ("Comma", 188),
         "-" => ("Minus", 189),

@@ -1,13 +1,14 @@
 //! The browser suite: a small runner for flows that use the built page with a real mouse and keyboard.
 //! `cargo web test [--full] [--only NAME]` builds the page and runs it.
 
+mod api;
 mod cdp;
 mod context;
+mod data;
 mod flows;
-#[allow(dead_code, reason = "hands for every gesture; the flows grow into them")]
 mod input;
-#[allow(dead_code, reason = "likewise")]
 mod page;
+mod poses;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,6 +17,7 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 use cdp::Backend;
 use context::Context;
+use data::Skipped;
 use flows::{FLOWS, Flow};
 
 /// Which flows to run.
@@ -78,22 +80,27 @@ fn run_all(choice: &Choice) -> ExitCode {
     let (mut passed, mut failed, mut skipped) = (0, 0, 0);
     for flow in FLOWS.iter().filter(|flow| choice.names(flow)) {
         for backend in flow.backends {
-            if !choice.runs(flow) {
-                skipped += 1;
-            } else if run_one(flow, *backend) {
-                passed += 1;
-            } else {
-                failed += 1;
+            let outcome = if choice.runs(flow) { run_one(flow, *backend) } else { Outcome::Skipped };
+            match outcome {
+                Outcome::Passed => passed += 1,
+                Outcome::Failed => failed += 1,
+                Outcome::Skipped => skipped += 1,
             }
         }
     }
-    let skipped = if skipped > 0 { format!(", {skipped} skipped") } else { String::new() };
-    println!("{passed} passed, {failed} failed{skipped}");
-    if failed == 0 && passed > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    let skipped_too = if skipped > 0 { format!(", {skipped} skipped") } else { String::new() };
+    println!("{passed} passed, {failed} failed{skipped_too}");
+    if failed == 0 && passed + skipped > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+enum Outcome {
+    Passed,
+    Failed,
+    Skipped,
 }
 
 /// Runs a flow in a browser of its own, and says how it went.
-fn run_one(flow: &Flow, backend: Backend) -> bool {
+fn run_one(flow: &Flow, backend: Backend) -> Outcome {
     let start = Instant::now();
     let (name, backend_name) = (flow.name, backend.name());
     let result = Context::new(name, backend).and_then(|mut context| {
@@ -101,11 +108,21 @@ fn run_one(flow: &Flow, backend: Backend) -> bool {
         // What the page said often explains why the flow failed.
         result.map_err(|error| describe_failure(error, flow, &mut context))
     });
+    let seconds = start.elapsed().as_secs_f64();
     match result {
-        Ok(()) => println!("ok {name} ({backend_name}) {:.1} s", start.elapsed().as_secs_f64()),
-        Err(ref error) => println!("FAILED {name} ({backend_name}): {error:#}"),
+        Ok(()) => {
+            println!("ok {name} ({backend_name}) {seconds:.1} s");
+            Outcome::Passed
+        }
+        Err(error) if error.is::<Skipped>() => {
+            println!("skipped {name} ({backend_name}): {error}");
+            Outcome::Skipped
+        }
+        Err(error) => {
+            println!("FAILED {name} ({backend_name}) {seconds:.1} s: {error:#}");
+            Outcome::Failed
+        }
     }
-    result.is_ok()
 }
 
 fn check_errors(context: &mut Context) -> anyhow::Result<()> {
@@ -117,6 +134,9 @@ fn check_errors(context: &mut Context) -> anyhow::Result<()> {
 
 /// Adds the console's errors and a screenshot to what went wrong.
 fn describe_failure(error: anyhow::Error, flow: &Flow, context: &mut Context) -> anyhow::Error {
+    if error.is::<Skipped>() {
+        return error;
+    }
     let backend = context.backend.name();
     let Ok(page) = context.page() else { return error };
     let mut notes: Vec<String> = page.errors().map(<[String]>::to_vec).unwrap_or_default();

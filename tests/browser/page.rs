@@ -8,16 +8,12 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use serde_json::{Value, json};
 
+use crate::api::files_expression;
 use crate::cdp::{Backend, Browser, Event};
+use crate::data::File;
 
 /// The page's size in CSS pixels, and in real ones: a software renderer draws this 13 times a second.
 pub const SIZE: (u32, u32) = (800, 600);
-
-/// A file that the page saved.
-pub struct Download {
-    pub name: String,
-    pub bytes: Vec<u8>,
-}
 
 /// A tab, the errors it reported, and the files it saved.
 pub struct Page {
@@ -125,20 +121,12 @@ impl Page {
     }
 
     /// Drops files onto the canvas, as if they were dragged in from a folder.
-    pub fn drop_files(&mut self, paths: &[PathBuf]) -> anyhow::Result<()> {
-        let read = |path: &PathBuf| {
-            let bytes = std::fs::read(path).with_context(|| format!("Could not read {}", path.display()))?;
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            anyhow::Ok(json!({ "name": name, "base64": BASE64.encode(bytes) }))
-        };
-        let files = paths.iter().map(read).collect::<anyhow::Result<Value>>()?;
+    pub fn drop_files(&mut self, files: &[File]) -> anyhow::Result<()> {
+        let files = files_expression(files);
         self.eval(&format!(
             "(() => {{
                 const dataTransfer = new DataTransfer();
-                for (const file of {files}) {{
-                    const bytes = Uint8Array.from(atob(file.base64), (letter) => letter.charCodeAt(0));
-                    dataTransfer.items.add(new File([bytes], file.name));
-                }}
+                for (const file of {files}) dataTransfer.items.add(file);
                 const canvas = document.querySelector('canvas');
                 for (const type of ['dragenter', 'dragover', 'drop']) {{
                     canvas.dispatchEvent(new DragEvent(type, {{ dataTransfer, bubbles: true, cancelable: true }}));
@@ -149,7 +137,7 @@ impl Page {
     }
 
     /// The newest file that the page saved and that was not asked for yet; waits for one if there is none.
-    pub fn download(&mut self, timeout: Duration) -> anyhow::Result<Download> {
+    pub fn download(&mut self, timeout: Duration) -> anyhow::Result<File> {
         let deadline = Instant::now() + timeout;
         self.take_events()?;
         while self.finished_downloads.is_empty() {
@@ -164,7 +152,7 @@ impl Page {
         let name = named.map(|(_, name)| name.clone()).context("A download without a name")?;
         let bytes =
             std::fs::read(self.download_folder.join(&id)).with_context(|| format!("{name} is not there"))?;
-        Ok(Download { name, bytes })
+        Ok(File { name, bytes })
     }
 
     /// What the page reported so far: console errors, exceptions nobody caught, requests that failed.

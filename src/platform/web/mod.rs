@@ -95,6 +95,31 @@ pub fn watch_for_updates(wake: impl Fn() + 'static) {
     noticed.forget();
 }
 
+/// Tells listeners of the page's `pinpose` event, and the page that embeds this one if it named itself by `?embedder=ORIGIN`.
+pub fn send_event(kind: &str, text: &str) {
+    send(kind, text)
+        .unwrap_or_else(|error| log::warn!("the event {kind} was not sent: {}", describe(&error)));
+}
+
+fn send(kind: &str, text: &str) -> Result<(), JsValue> {
+    let window = web_sys::window().ok_or("the page is gone")?;
+    let detail = js_sys::Object::new();
+    js_sys::Reflect::set(&detail, &"type".into(), &kind.into())?;
+    js_sys::Reflect::set(&detail, &"text".into(), &text.into())?;
+    let options = web_sys::CustomEventInit::new();
+    options.set_detail(&detail);
+    let event = web_sys::CustomEvent::new_with_event_init_dict("pinpose", &options)?;
+    window.dispatch_event(&event)?;
+    if let (Some(origin), Some(parent)) = (page_parameter("embedder"), window.parent()?)
+        && parent != window
+    {
+        let message = js_sys::Object::new();
+        js_sys::Reflect::set(&message, &"pinpose".into(), &detail)?;
+        parent.post_message(&message, &origin)?;
+    }
+    Ok(())
+}
+
 /// Lets the newer page take over.
 pub fn reload() {
     page_apply_update();

@@ -1,0 +1,111 @@
+//! What frames cost, and that there are none where nothing changes.
+
+use std::time::Duration;
+
+use anyhow::{Context as _, ensure};
+
+use super::start_with_sample;
+use crate::api::{PATIENCE, Perf};
+use crate::context::Context;
+use crate::data::{self, File, Linemod, ball_ply, camera_file, flat_photo};
+use crate::input::Button;
+use crate::page::Page;
+use crate::poses::{axis_rotation, projected, transformed, unprojected, with_translation};
+
+/// With no input the page draws nothing.
+pub fn idle(context: &mut Context) -> anyhow::Result<()> {
+    let (page, _) = start_with_sample(context, &Linemod::open()?)?;
+    // Messages that leave by themselves are a change.
+    page.wait_for_state("state.notices.length === 0", PATIENCE)?;
+    page.wait_until_saved()?;
+    // Asking costs frames too: as many after a short rest as after a long one.
+    let rest = |page: &mut Page, seconds: f64| {
+        std::thread::sleep(Duration::from_secs_f64(seconds));
+        page.perf()
+    };
+    let first = rest(page, 1.0)?;
+    let second = rest(page, 1.0)?;
+    let third = rest(page, 3.5)?;
+    let (asking, resting) = (second.frames - first.frames, third.frames - second.frames);
+    println!("   frames: {asking} for a call of the API, {resting} for one after 3.5 s of rest");
+    ensure!(asking <= 4, "A call of the API costs {asking} frames");
+    ensure!(resting <= asking, "{} frames were drawn in 3.5 s without input", resting - asking);
+    Ok(())
+}
+
+/// In a drag neither the uploads nor the draw calls depend on the mesh.
+pub fn drag_cost(context: &mut Context) -> anyhow::Result<()> {
+    let page = context.start("")?;
+    let photo = || flat_photo("flat.png", [70, 74, 80]);
+    // 5 680 triangles, as many as obj_000001 has, and ten times more.
+    let small =
+        cost_of_drag(page, &[photo()?, ball_ply("small.ply", 50.0, 71, 41), camera_file("camera.json")])?;
+    page.command("new_scene")?;
+    let large =
+        cost_of_drag(page, &[photo()?, ball_ply("large.ply", 50.0, 200, 143), camera_file("camera.json")])?;
+    println!("   small: {small}\n   large: {large}");
+    ensure!(large.triangles > 8.0 * small.triangles, "The meshes are not of two sizes");
+    for cost in [&small, &large] {
+        // One object's and one frame's uniforms.
+        ensure!(cost.bytes <= 1024.0, "{} bytes are uploaded for a step of a drag", cost.bytes);
+        // The object in two passes and the composition; a repaint that changes nothing composes again.
+        ensure!(cost.draws <= 6.0, "{} draw calls for a step of a drag", cost.draws);
+    }
+    ensure!(large.bytes <= small.bytes * 1.01, "Uploads depend on the mesh");
+    Ok(())
+}
+
+/// For one step of a drag.
+struct Cost {
+    bytes: f64,
+    draws: f64,
+    triangles: f64,
+    frames: f64,
+    cpu_ms: f64,
+}
+
+impl std::fmt::Display for Cost {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Cost { bytes, draws, triangles, frames, cpu_ms } = self;
+        write!(
+            formatter,
+            "{bytes:.0} bytes, {draws:.1} draw calls, {triangles:.0} triangles, {frames:.1} frames a step; \
+             {cpu_ms:.2} ms of CPU a frame"
+        )
+    }
+}
+
+const STEPS: u32 = 6;
+
+fn cost_of_drag(page: &mut Page, files: &[File]) -> anyhow::Result<Cost> {
+    page.load(files)?;
+    let state = page.state()?;
+    let target = unprojected(&data::CAMERA, (260.0, 200.0), 600.0);
+    let object = state.selection.object.context("No object is selected")?;
+    page.set_pose(state.shown_photo()?.id, object, with_translation(axis_rotation(0, 0.0), target))?;
+    let state = page.wait_until_saved()?;
+    let pose = state.selected_pose()?.camera_from_object;
+    ensure!(transformed(&pose, [0.0; 3]) == target, "The pose was not set");
+    let from = page.mouse_place(projected(&data::CAMERA, &pose, [0.0; 3]))?;
+    page.mouse_move(from)?;
+    page.mouse_down(from, Button::Left)?;
+    page.mouse_move_holding((from.0 + 10.0, from.1), Button::Left)?;
+    let before = page.perf()?;
+    for step in 1..=STEPS {
+        page.mouse_move_holding((from.0 + 10.0 + f64::from(step) * 8.0, from.1), Button::Left)?;
+    }
+    let after = page.perf()?;
+    page.mouse_up((from.0 + 10.0 + f64::from(STEPS) * 8.0, from.1), Button::Left)?;
+    Ok(cost_of_steps(&before, &after))
+}
+
+fn cost_of_steps(before: &Perf, after: &Perf) -> Cost {
+    let steps = f64::from(STEPS);
+    Cost {
+        bytes: after.uploaded_bytes as f64 / steps,
+        draws: after.draw_calls as f64 / steps,
+        triangles: after.triangles as f64 / steps,
+        frames: (after.frames - before.frames) as f64 / steps,
+        cpu_ms: after.cpu_ms.median,
+    }
+}

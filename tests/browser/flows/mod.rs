@@ -1,0 +1,80 @@
+//! The flows: what a user does with the page, on which backends.
+
+mod bad_input;
+mod idle;
+mod masks;
+mod path;
+mod pixels;
+mod safety;
+mod startup;
+mod view;
+
+use anyhow::Context as _;
+
+use crate::api::State;
+use crate::cdp::Backend;
+use crate::context::Context;
+use crate::data::{Linemod, Sample};
+use crate::page::Page;
+
+pub struct Flow {
+    pub name: &'static str,
+    pub backends: &'static [Backend],
+    /// Runs with `--full` alone.
+    pub full_only: bool,
+    pub run: fn(&mut Context) -> anyhow::Result<()>,
+}
+
+impl Flow {
+    const fn on(backends: &'static [Backend], name: &'static str, run: FlowFn) -> Flow {
+        Flow { name, backends, full_only: false, run }
+    }
+
+    const fn long(self) -> Flow {
+        Flow { full_only: true, ..self }
+    }
+}
+
+type FlowFn = fn(&mut Context) -> anyhow::Result<()>;
+
+const BOTH: &[Backend] = &[Backend::WebGpu, Backend::WebGl];
+const WEBGL: &[Backend] = &[Backend::WebGl];
+const WEBGPU: &[Backend] = &[Backend::WebGpu];
+
+pub const FLOWS: &[Flow] = &[
+    Flow::on(BOTH, "starts", startup::starts),
+    Flow::on(WEBGL, "startup", startup::startup),
+    Flow::on(WEBGPU, "startup-webgpu", startup::startup).long(),
+    Flow::on(WEBGL, "example", startup::example),
+    Flow::on(BOTH, "path", path::path),
+    Flow::on(WEBGL, "late-files", path::late_files),
+    Flow::on(BOTH, "masks", masks::three_samples),
+    Flow::on(BOTH, "masks-all", masks::all_samples).long(),
+    Flow::on(BOTH, "pixels", pixels::pixels),
+    Flow::on(WEBGL, "view", view::view),
+    Flow::on(WEBGPU, "view-webgpu", view::view).long(),
+    Flow::on(WEBGL, "idle", idle::idle),
+    Flow::on(WEBGPU, "idle-webgpu", idle::idle).long(),
+    Flow::on(BOTH, "drag-cost", idle::drag_cost),
+    Flow::on(WEBGL, "bad-input", bad_input::bad_files),
+    Flow::on(WEBGL, "bad-calls", bad_input::bad_calls),
+    Flow::on(WEBGL, "offline", safety::offline),
+    Flow::on(WEBGL, "crash", safety::crash),
+];
+
+/// The sample that most flows use.
+const PHOTO: &str = "000019.png";
+
+/// Opens the page with a sample in it, its true pose the selected object's.
+fn start_with_sample<'a>(
+    context: &'a mut Context,
+    linemod: &Linemod,
+) -> anyhow::Result<(&'a mut Page, State)> {
+    let sample: &Sample = linemod.sample(PHOTO)?;
+    let files = linemod.files_of(sample)?;
+    let page = context.start("")?;
+    page.load(&files)?;
+    let state = page.wait_until_saved()?;
+    state.selected_pose().context("The sample was not loaded")?;
+    Ok((page, state))
+}
