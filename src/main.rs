@@ -25,7 +25,7 @@ fn open_window() -> ExitCode {
         let start = Start {
             // A window has no page that could call.
             calls: PageCalls::new(Rc::new(|| {})),
-            storage: platform::default_storage(),
+            storage: platform::default_storage(platform::Slot::Current),
             restore: true,
             load_example: false,
         };

@@ -7,7 +7,7 @@ use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 
 use crate::app::{PinPose, Start};
-use crate::platform::{self, PageAnswer, PageCall, PageCalls, Perf};
+use crate::platform::{self, PageAnswer, PageCall, PageCalls, Perf, Slot};
 
 /// Starts the program on a canvas; resolves when its first frame is drawn.
 ///
@@ -33,12 +33,13 @@ pub async fn start(canvas: HtmlCanvasElement, options: JsValue) -> Result<(), Js
         if bare {
             return Ok(Box::new(Bare { calls, start_ms: 0.0 }));
         }
+        let load_example = platform::page_parameter("example").is_some();
+        let slot = if load_example { Slot::Example } else { Slot::Current };
         let start = Start {
             calls,
-            storage: platform::default_storage(),
-            restore: platform::page_parameter("empty").is_none()
-                && platform::page_parameter("example").is_none(),
-            load_example: platform::page_parameter("example").is_some(),
+            storage: platform::default_storage(slot),
+            restore: !load_example && platform::page_parameter("empty").is_none(),
+            load_example,
         };
         Ok(Box::new(PinPose::new(creation, start)))
     });
@@ -52,6 +53,9 @@ pub async fn start(canvas: HtmlCanvasElement, options: JsValue) -> Result<(), Js
 /// One job of a worker that loaded the same wasm.
 #[wasm_bindgen]
 pub fn run_job(request: &[u8]) -> Vec<u8> {
+    // `start` never runs there, so the worker's panics would have no words.
+    static HOOK: std::sync::Once = std::sync::Once::new();
+    HOOK.call_once(platform::install_panic_hook);
     crate::app::run_job(request)
 }
 

@@ -13,11 +13,9 @@ pub fn number(args: &Array, index: u32, name: &str) -> Result<f64, JsValue> {
 }
 
 pub fn set_pose(args: &Array) -> CallResult {
-    let rows: Vec<Vec<f64>> = Array::from(&args.get(2))
-        .iter()
-        .map(|row| Array::from(&row).iter().filter_map(|value| value.as_f64()).collect())
-        .collect();
-    let rows: Vec<[f64; 4]> = rows.into_iter().filter_map(|row| row.try_into().ok()).collect();
+    let rows = items(&args.get(2));
+    let rows = rows.iter().map(|row| items(row).iter().filter_map(JsValue::as_f64).collect::<Vec<f64>>());
+    let rows: Vec<[f64; 4]> = rows.filter_map(|row| row.try_into().ok()).collect();
     let camera_from_object: [[f64; 4]; 4] =
         rows.try_into().map_err(|_| error("the matrix is not four rows of four numbers"))?;
     Ok(PageCall::SetPose {
@@ -44,16 +42,14 @@ pub fn render(args: &Array) -> CallResult {
 /// `load(files, {posesAs})`: files are `File`s or `{name, bytes}`, one or several.
 pub async fn load(args: &Array) -> CallResult {
     let given = args.get(0);
-    let list = if js_sys::Object::is(&given, &JsValue::UNDEFINED) {
-        return Err(error("files expected"));
-    } else if given.has_type::<web_sys::File>() || field(&given, "bytes").is_truthy() {
-        Array::of1(&given)
-    } else {
-        Array::from(&given)
-    };
+    let is_one = given.has_type::<web_sys::File>() || field(&given, "bytes").is_truthy();
+    let list = if is_one { vec![given] } else { items(&given) };
+    if list.is_empty() {
+        return Err(error("a File or {name, bytes}, one or several, expected"));
+    }
     let mut files = Vec::new();
-    for item in list.iter() {
-        files.push(file(&item).await?);
+    for item in &list {
+        files.push(file(item).await?);
     }
     Ok(PageCall::Load { files, poses_as: field(&args.get(1), "posesAs").as_string() })
 }
@@ -69,6 +65,12 @@ async fn file(item: &JsValue) -> Result<FileBytes, JsValue> {
         Some(name) if bytes.is_object() => Ok(FileBytes { name, bytes: Uint8Array::new(&bytes).to_vec() }),
         _ => Err(error("a File or {name, bytes} expected")),
     }
+}
+
+/// The items of an array, a `FileList` or anything else that can be gone through; nothing where it cannot.
+fn items(value: &JsValue) -> Vec<JsValue> {
+    let items = js_sys::try_iter(value).ok().flatten();
+    items.map(|items| items.filter_map(Result::ok).collect()).unwrap_or_default()
 }
 
 /// A property, or `undefined`.

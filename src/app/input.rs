@@ -15,9 +15,10 @@ const POINTS_PER_NOTCH: f32 = 100.0;
 const LEAST_POINTS_OF_A_NOTCH: f32 = 40.0;
 
 impl PinPose {
-    /// Keys act while no text is being edited and no question is open.
+    /// Keys act while no text is being edited and nothing is open that has keys of its own.
     pub(super) fn take_keys(&mut self, ctx: &egui::Context) {
-        if ctx.egui_wants_keyboard_input() || self.session.question().is_some() {
+        let dialog_is_open = self.session.question().is_some() || self.ui_state.shortcuts_open;
+        if dialog_is_open || ctx.text_edit_focused() || egui::Popup::is_any_open(ctx) {
             return;
         }
         for id in ctx.input_mut(pressed_commands) {

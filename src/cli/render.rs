@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::{Failure, Outcome, open};
 use crate::photo::{decode, png_rgba};
-use crate::render::{ExportKind, Gpu, Layer, Renderer, export_picture, raster_png, silhouette_png};
+use crate::render::{ExportKind, Layer, Renderer, export_picture, raster_png, silhouette_png};
 use crate::scene::{ObjectId, Photo, Scene, file_stem};
 
 struct Options {
@@ -34,8 +34,7 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
                     let renderer = match &mut renderer {
                         Some(renderer) => renderer,
                         empty => {
-                            let gpu = Gpu::headless().map_err(|error| problem(error.to_string()))?;
-                            empty.insert(Renderer::new(gpu, wgpu::TextureFormat::Rgba8Unorm))
+                            empty.insert(Renderer::headless().map_err(|error| problem(error.to_string()))?)
                         }
                     };
                     draw(renderer, scene, photo, options.kind, object).map_err(problem)?

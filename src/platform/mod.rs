@@ -41,5 +41,21 @@ pub type Wake = std::rc::Rc<dyn Fn()>;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UpdateOffer;
 
+/// Under which name a scene is kept; the example has its own, so that trying it never touches anybody's work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slot {
+    Current,
+    Example,
+}
+
+impl Slot {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Current => "current",
+            Self::Example => "example",
+        }
+    }
+}
+
 /// Where the example is, relative to the page.
 const EXAMPLE_PATH: &str = "demo/example.zip";

@@ -88,6 +88,12 @@ impl Renderer {
         }
     }
 
+    /// A renderer without a screen.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn headless() -> Result<Self, super::GpuError> {
+        Ok(Self::new(Gpu::headless()?, super::targets::COLOR_FORMAT))
+    }
+
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }

@@ -77,7 +77,7 @@ fn convert_goes_through_a_workspace_without_loss() {
 
 #[test]
 fn render_draws_masks_and_overlays_of_linemod() {
-    let (Some(linemod), Some(_)) = (data_folder("linemod10"), crate::support::gpu()) else { return };
+    let (Some(linemod), Some(_)) = (data_folder("linemod10"), crate::support::renderer()) else { return };
     let out = folder("render");
     let path = |name: &str| linemod.join(name).display().to_string();
     let files = [path("000019.png"), path("obj_000001.ply"), path("groud_truth.txt")];

@@ -29,7 +29,7 @@ const RESERVED: [(&str, &[&str]); 11] = [
     ("eframe", &["app", "page", "main"]),
     ("egui_wgpu", &["ui", "page"]),
     // Besides the renderer: the viewport's callback, the program that hands it the device, and the entries.
-    ("wgpu", &["render", "ui", "app", "page", "cli"]),
+    ("wgpu", &["render", "ui", "app", "page"]),
     ("wasm_bindgen", &["platform", "api", "page"]),
     ("web_sys", &["platform", "api", "page"]),
     ("js_sys", &["platform", "api", "page"]),

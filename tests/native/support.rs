@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pinpose::formats::{NamedFile, Parsed, PosesAs, classify, parse_text_or_archive, read_mesh, read_photo};
-use pinpose::render::{Gpu, Renderer};
+use pinpose::render::Renderer;
 use pinpose::session::{Batch, Command, Effect, Session};
 
 /// A time for commands: any fixed one replays the same.
@@ -21,19 +21,15 @@ pub fn data_folder(name: &str) -> Option<PathBuf> {
     None
 }
 
-/// A GPU, real or in software.
-pub fn gpu() -> Option<Gpu> {
-    match Gpu::headless() {
-        Ok(gpu) => Some(gpu),
+/// A renderer on whatever GPU there is, real or in software.
+pub fn renderer() -> Option<Renderer> {
+    match Renderer::headless() {
+        Ok(renderer) => Some(renderer),
         Err(error) => {
             missing(&error.to_string());
             None
         }
     }
-}
-
-pub fn renderer() -> Option<Renderer> {
-    Some(Renderer::new(gpu()?, wgpu::TextureFormat::Rgba8Unorm))
 }
 
 fn missing(what: &str) {

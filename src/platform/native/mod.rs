@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use super::{EXAMPLE_PATH, FileBytes, Storage, UpdateOffer};
+use super::{EXAMPLE_PATH, FileBytes, Slot, Storage, UpdateOffer};
 
 pub use background::Background;
 
@@ -84,11 +84,11 @@ pub fn update_offer() -> Option<UpdateOffer> {
 pub fn reload() {}
 
 /// The folder where this user's programs keep their data.
-pub fn default_storage() -> Rc<dyn Storage> {
+pub fn default_storage(slot: Slot) -> Rc<dyn Storage> {
     let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/share"));
     let data = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).or_else(home);
     match data {
-        Some(data) => Rc::new(folder::FolderStorage::new(data.join("pinpose"))),
+        Some(data) => Rc::new(folder::FolderStorage::new(data.join("pinpose").join(slot.name()))),
         None => Rc::new(super::MemoryStorage::default()),
     }
 }

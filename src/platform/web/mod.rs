@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use wasm_bindgen::prelude::*;
 
-use super::{Storage, UpdateOffer};
+use super::{Slot, Storage, UpdateOffer};
 
 pub use background::Background;
 pub use files::{download, fetch_example, pick_files};
@@ -27,6 +27,8 @@ extern "C" {
     static BUILD_VERSION: JsValue;
     #[wasm_bindgen(thread_local_v2, js_namespace = pinposePage, js_name = wasmBytes)]
     static WASM_BYTES: JsValue;
+    #[wasm_bindgen(thread_local_v2, js_namespace = pinposePage, js_name = updateReady)]
+    static UPDATE_READY_AT_START: JsValue;
 }
 
 thread_local! {
@@ -83,6 +85,7 @@ pub fn update_offer() -> Option<UpdateOffer> {
 
 /// Listens for the boot script's word that a newer page is ready.
 pub fn watch_for_updates(wake: impl Fn() + 'static) {
+    UPDATE_READY.set(UPDATE_READY_AT_START.with(JsValue::is_truthy));
     let noticed = Closure::<dyn Fn()>::new(move || {
         UPDATE_READY.set(true);
         wake();
@@ -125,8 +128,8 @@ pub fn reload() {
     page_apply_update();
 }
 
-pub fn default_storage() -> Rc<dyn Storage> {
-    Rc::new(indexed_db::IndexedDb::default())
+pub fn default_storage(slot: Slot) -> Rc<dyn Storage> {
+    Rc::new(indexed_db::IndexedDb::new(slot))
 }
 
 /// The words of an error from the browser.
