@@ -101,12 +101,16 @@ fn side_panel(
     camera_form: &mut camera_panel::CameraForm,
     commands: &mut Vec<Command>,
 ) {
+    // What changes under the hand stays in sight, however long the lists are.
+    Panel::bottom("side panel foot").frame(Frame::NONE).show(ui, |ui| {
+        scene_panel::overlay(ui, session, commands);
+        pose_panel::draw(ui, session, commands);
+    });
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         scene_panel::photos(ui, session, commands);
         camera_panel::draw(ui, session, camera_form, commands);
         scene_panel::objects(ui, session, commands);
         scene_panel::references(ui, session, commands);
-        scene_panel::overlay(ui, session, commands);
-        pose_panel::draw(ui, session, commands);
+        ui.add_space(8.0);
     });
 }

@@ -52,7 +52,12 @@ fn state_text(annotation: &Annotation) -> &'static str {
 /// Three rows that fit the panel.
 fn matrix_text(pose: &Pose) -> String {
     let [x, y, z, _] = pose.to_rows();
-    let row = |row: [f64; 4]| format!("{:8.4}{:8.4}{:8.4}{:9.2}", row[0], row[1], row[2], row[3]);
+    // Adding zero makes a zero of a negative one, and rounding first makes one of what is printed as one.
+    let rounded = |value: f64, scale: f64| (value * scale).round() / scale + 0.0;
+    let row = |row: [f64; 4]| {
+        let [a, b, c] = [row[0], row[1], row[2]].map(|value| rounded(value, 1e4));
+        format!("{a:8.4}{b:8.4}{c:8.4}{:9.2}", rounded(row[3], 1e2))
+    };
     [row(x), row(y), row(z)].join("\n")
 }
 

@@ -36,6 +36,11 @@ window.addEventListener('unhandledrejection', ({ reason }) => {
   if (reason instanceof WebAssembly.RuntimeError) showCrash(reason.stack || reason.message);
 });
 
+// WebGPU reports a lost device to the wasm; of a lost WebGL context only the canvas is told.
+canvas.addEventListener('webglcontextlost', () => {
+  showCrash('The connection to the graphics card was lost (WebGL context lost).');
+});
+
 card.classList.add('loading');
 boot();
 
