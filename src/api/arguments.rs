@@ -12,6 +12,13 @@ pub fn number(args: &Array, index: u32, name: &str) -> Result<f64, JsValue> {
     value.as_f64().ok_or_else(|| error(&format!("{name} is {value:?}, a number expected")))
 }
 
+/// The id of a photo or an object.
+fn id(value: &JsValue, name: &str) -> Result<u32, JsValue> {
+    let whole =
+        value.as_f64().filter(|number| number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(number));
+    whole.map(|number| number as u32).ok_or_else(|| error(&format!("{name} is {value:?}, an id expected")))
+}
+
 pub fn set_pose(args: &Array) -> CallResult {
     let rows = items(&args.get(2));
     let rows = rows.iter().map(|row| items(row).iter().filter_map(JsValue::as_f64).collect::<Vec<f64>>());
@@ -19,8 +26,8 @@ pub fn set_pose(args: &Array) -> CallResult {
     let camera_from_object: [[f64; 4]; 4] =
         rows.try_into().map_err(|_| error("the matrix is not four rows of four numbers"))?;
     Ok(PageCall::SetPose {
-        photo: number(args, 0, "photo")? as u32,
-        object: number(args, 1, "object")? as u32,
+        photo: id(&args.get(0), "photo")?,
+        object: id(&args.get(1), "object")?,
         camera_from_object,
     })
 }
@@ -34,9 +41,12 @@ pub fn command(args: &Array) -> CallResult {
 
 pub fn render(args: &Array) -> CallResult {
     let options = args.get(0);
-    let id = |name: &str| field(&options, name).as_f64().map(|id| id as u32);
+    let optional_id = |name: &str| match field(&options, name) {
+        value if value.is_undefined() || value.is_null() => Ok(None),
+        value => id(&value, name).map(Some),
+    };
     let kind = field(&options, "kind").as_string().ok_or_else(|| error("kind is missing"))?;
-    Ok(PageCall::Render { photo: id("photo"), kind, object: id("object") })
+    Ok(PageCall::Render { photo: optional_id("photo")?, kind, object: optional_id("object")? })
 }
 
 /// `load(files, {posesAs})`: files are `File`s or `{name, bytes}`, one or several.

@@ -99,8 +99,8 @@ impl PinPose {
 
     fn call_command(&mut self, name: &str, value: Option<PageValue>) -> Answer {
         let command = match (name, value) {
-            ("show_photo", Some(PageValue::Number(id))) => Command::ShowPhoto(PhotoId(id as u32)),
-            ("select", Some(PageValue::Number(id))) => Command::Select(Some(ObjectId(id as u32))),
+            ("show_photo", Some(PageValue::Number(id))) => Command::ShowPhoto(PhotoId(whole(id)?)),
+            ("select", Some(PageValue::Number(id))) => Command::Select(Some(ObjectId(whole(id)?))),
             ("select", None) => Command::Select(None),
             ("set_overlay_opacity", Some(PageValue::Number(opacity))) => {
                 Command::SetOverlayOpacity(opacity as f32)
@@ -296,4 +296,10 @@ impl PinPose {
             None => ctx.request_repaint(),
         }
     }
+}
+
+/// An id that came as a number.
+fn whole(number: f64) -> Result<u32, String> {
+    let is_id = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
+    if is_id { Ok(number as u32) } else { Err(format!("{number} is no id")) }
 }

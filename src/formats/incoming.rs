@@ -46,7 +46,8 @@ pub enum IncomingCamera {
 #[derive(Debug, Clone, PartialEq)]
 pub struct IncomingObject {
     pub key: FileKey,
-    pub mesh_from_file: DMat4,
+    /// `None`: as the scene has it.
+    pub mesh_from_file: Option<DMat4>,
     pub look: Option<Look>,
 }
 
@@ -81,7 +82,7 @@ pub struct IncomingReference {
 
 impl IncomingObject {
     pub fn named(key: FileKey) -> Self {
-        Self { key, mesh_from_file: DMat4::IDENTITY, look: None }
+        Self { key, mesh_from_file: None, look: None }
     }
 }
 

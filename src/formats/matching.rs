@@ -52,6 +52,8 @@ pub struct Outcome {
     pub differing_cameras: Vec<(PhotoId, super::CameraFile)>,
     /// What could not be done.
     pub problems: Vec<String>,
+    /// The part that waits for files; what was given to the scene is not in it, for the user may change that meanwhile.
+    pub rest: Option<Incoming>,
 }
 
 impl Incoming {
@@ -72,7 +74,27 @@ impl Incoming {
             PosesAs::Annotations => self.apply_annotations(scene, &photos, &objects, now_ms, &mut outcome),
             PosesAs::Reference => self.apply_reference(scene, &photos, &objects, &mut outcome),
         }
+        if !outcome.missing.is_empty() {
+            outcome.rest = Some(self.without(&photos, &objects, poses_as));
+        }
         outcome
+    }
+
+    /// What is left once photos and objects that were found have got theirs.
+    fn without(&self, photos: &[Option<PhotoId>], objects: &[Option<ObjectId>], poses_as: PosesAs) -> Self {
+        let mut rest = self.clone();
+        rest.remarks.clear();
+        for (object, _) in rest.objects.iter_mut().zip(objects).filter(|(_, id)| id.is_some()) {
+            (object.look, object.mesh_from_file) = (None, None);
+        }
+        for (photo, _) in rest.photos.iter_mut().zip(photos).filter(|(_, id)| id.is_some()) {
+            photo.camera = None;
+            // A reference is read-only: giving it again, more complete, takes nothing from anybody.
+            if poses_as == PosesAs::Annotations {
+                photo.poses.retain(|pose| objects.get(pose.object).is_none_or(Option::is_none));
+            }
+        }
+        rest
     }
 
     fn apply_annotations(
@@ -192,13 +214,11 @@ fn restore_look(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> O
         object.visible = look.visible;
         object.locked = look.locked;
     }
-    if object.mesh_from_file == incoming.mesh_from_file {
-        return None;
-    }
-    match object.mesh.with_mesh_from_file(object.mesh_from_file, incoming.mesh_from_file) {
+    let wanted = incoming.mesh_from_file.filter(|wanted| *wanted != object.mesh_from_file)?;
+    match object.mesh.with_mesh_from_file(object.mesh_from_file, wanted) {
         Ok(mesh) => {
             object.mesh = Arc::new(mesh);
-            object.mesh_from_file = incoming.mesh_from_file;
+            object.mesh_from_file = wanted;
             None
         }
         Err(error) => Some(format!("{}: mesh_from_file cannot be applied: {error}", object.name)),

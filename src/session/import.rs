@@ -129,12 +129,16 @@ impl Session {
             .collect();
         effects.push(Effect::Notify(describe(&incoming, poses_as, &outcome)));
         self.ask_about_cameras(&outcome);
-        if !outcome.missing.is_empty() {
+        self.wait_for(outcome, poses_as);
+        self.show_annotated_photo();
+        effects
+    }
+
+    fn wait_for(&mut self, outcome: Outcome, poses_as: PosesAs) {
+        if let Some(incoming) = outcome.rest {
             self.waiting.retain(|waiting| waiting.incoming != incoming);
             self.waiting.push(Waiting { incoming, poses_as, missing: outcome.missing });
         }
-        self.show_annotated_photo();
-        effects
     }
 
     fn ask_about_cameras(&mut self, outcome: &Outcome) {
@@ -267,7 +271,7 @@ impl Session {
             remarks_of(&incoming, &outcome).map(|remark| notify_warning("scene", remark)).collect();
         if !outcome.missing.is_empty() {
             effects.push(Effect::Notify(describe(&incoming, PosesAs::Annotations, &outcome)));
-            self.waiting.push(Waiting { incoming, poses_as: PosesAs::Annotations, missing: outcome.missing });
+            self.wait_for(outcome, PosesAs::Annotations);
         }
         effects
     }

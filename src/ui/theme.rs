@@ -27,6 +27,8 @@ const LINE: Color32 = Color32::from_rgb(50, 54, 64);
 /// Puts the theme on a context.
 pub fn apply_theme(ctx: &egui::Context) {
     ctx.set_theme(Theme::Dark);
+    // As long as on most desktops; egui's own 0.3 s is too short for some hands.
+    ctx.options_mut(|options| options.input_options.max_double_click_delay = 0.5);
     ctx.all_styles_mut(|style| {
         let proportional = |size| FontId::new(size, FontFamily::Proportional);
         style.text_styles = [

@@ -50,7 +50,8 @@ impl Toasts {
             .anchor(Align2::RIGHT_BOTTOM, Vec2::new(-14.0, -14.0))
             .show(ctx, |ui| {
                 for (index, toast) in self.shown.iter().enumerate() {
-                    if draw_one(ui, &toast.notice) {
+                    // Named by its text: a click is not lost when another message comes or goes between press and release.
+                    if ui.push_id(&toast.notice.text, |ui| draw_one(ui, &toast.notice)).inner {
                         closed = Some(index);
                     }
                 }

@@ -1,6 +1,6 @@
 //! What the flows find and check through `window.pinpose`, with types. Acting goes through the mouse and the keyboard.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
 use base64::Engine as _;
@@ -236,23 +236,21 @@ impl Page {
 
     /// Waits for a widget with this label, and clicks its middle with the mouse.
     pub fn click_widget(&mut self, label: &str) -> anyhow::Result<()> {
-        let is_there = format!(
-            "window.pinpose.widgets().then((all) => all.some((it) => it.visible && it.label === {}))",
-            json!(label)
-        );
-        self.wait_until(&is_there, PATIENCE)?;
-        let widgets = self.widgets()?;
+        let widgets = self.wait_for_widgets(&[label])?;
         let widget = widgets.iter().find(|widget| widget.label == label);
         let place = widget.with_context(|| format!("\"{label}\" is gone again"))?.center();
         self.click(place, Button::Left, &[])
     }
 
-    pub fn ensure_shown(&mut self, labels: &[&str]) -> anyhow::Result<()> {
-        let widgets = self.widgets()?;
-        for label in labels {
-            ensure!(widgets.iter().any(|widget| widget.label == *label), "\"{label}\" is not on the page");
+    /// Waits until widgets with these labels can be seen. What opens takes a frame or two.
+    pub fn wait_for_widgets(&mut self, labels: &[&str]) -> anyhow::Result<Vec<Widget>> {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let widgets = self.widgets()?;
+            let missing = labels.iter().find(|label| !widgets.iter().any(|widget| widget.label == **label));
+            let Some(missing) = missing else { return Ok(widgets) };
+            ensure!(Instant::now() < deadline, "\"{missing}\" is not on the page");
         }
-        Ok(())
     }
 
     fn ask<T: DeserializeOwned>(&mut self, call: &str) -> anyhow::Result<T> {

@@ -27,10 +27,6 @@ impl File {
         Ok(File { name, bytes })
     }
 
-    pub fn renamed(&self, name: &str) -> File {
-        File::new(name, self.bytes.clone())
-    }
-
     /// The first part of the file, as if a copy had broken off.
     pub fn cut(&self, name: &str, fraction: f64) -> File {
         let length = (self.bytes.len() as f64 * fraction) as usize;

@@ -70,21 +70,29 @@ impl Page {
     }
 
     pub fn mouse_down(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
-        self.press(at, button, 1, &[])
+        self.press(at, button, &[])
     }
 
     pub fn mouse_up(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
-        self.release(at, button, 1, &[])
+        self.release(at, button, &[])
     }
 
     pub fn click(&mut self, at: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {
-        self.clicks(at, button, 1, modifiers)
+        self.hold(modifiers, |page| {
+            page.mouse_move(at)?;
+            page.press(at, button, modifiers)?;
+            page.release(at, button, modifiers)
+        })
     }
 
+    /// Two clicks without a frame between them: a slow renderer's frames are as long as a double click may take.
     pub fn double_click(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
-        self.clicks(at, button, 1, &[])?;
-        self.press(at, button, 2, &[])?;
-        self.release(at, button, 2, &[])
+        self.mouse_move(at)?;
+        for count in [1, 2] {
+            self.send_mouse("mousePressed", at, button_fields(button, true, count, &[]))?;
+            self.send_mouse("mouseReleased", at, button_fields(button, false, count, &[]))?;
+        }
+        self.next_frame()
     }
 
     /// Presses, moves in equal steps, releases.
@@ -99,22 +107,27 @@ impl Page {
         ensure!(steps > 0, "A drag without steps");
         self.hold(modifiers, |page| {
             page.mouse_move(from)?;
-            page.press(from, button, 1, modifiers)?;
+            page.press(from, button, modifiers)?;
             for step in 1..=steps {
                 let share = f64::from(step) / f64::from(steps);
                 let at = (from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share);
                 page.move_holding(at, button, modifiers)?;
             }
-            page.release(to, button, 1, modifiers)
+            page.release(to, button, modifiers)
         })
     }
 
-    /// Turns the wheel over a point; a positive delta scrolls down.
-    pub fn wheel(&mut self, at: Point, delta: f64, modifiers: &[Modifier]) -> anyhow::Result<()> {
+    /// Turns the wheel over a point by so many notches, quickly; positive is up, away from the user.
+    pub fn wheel(&mut self, at: Point, notches: i32, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        // Pixels a notch, down, as Chromium reports a wheel.
+        let delta = if notches > 0 { -100 } else { 100 };
         let bits = bits(modifiers);
         self.hold(modifiers, |page| {
             page.mouse_move(at)?;
-            page.mouse("mouseWheel", at, json!({ "deltaX": 0, "deltaY": delta, "modifiers": bits }))
+            for _ in 0..notches.unsigned_abs() {
+                page.send_mouse("mouseWheel", at, json!({ "deltaX": 0, "deltaY": delta, "modifiers": bits }))?;
+            }
+            page.next_frame()
         })
     }
 
@@ -134,48 +147,31 @@ impl Page {
         })
     }
 
-    fn clicks(
-        &mut self,
-        at: Point,
-        button: Button,
-        count: u32,
-        modifiers: &[Modifier],
-    ) -> anyhow::Result<()> {
-        self.hold(modifiers, |page| {
-            page.mouse_move(at)?;
-            page.press(at, button, count, modifiers)?;
-            page.release(at, button, count, modifiers)
-        })
-    }
-
     fn move_holding(&mut self, to: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {
         let held = json!({ "button": button.name(), "buttons": button.bit(), "modifiers": bits(modifiers) });
         self.mouse("mouseMoved", to, held)
     }
 
-    fn press(&mut self, at: Point, button: Button, count: u32, modifiers: &[Modifier]) -> anyhow::Result<()> {
-        let held = button.bit();
-        let fields = json!({ "button": button.name(), "buttons": held, "clickCount": count, "modifiers": bits(modifiers) });
-        self.mouse("mousePressed", at, fields)
+    fn press(&mut self, at: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        self.mouse("mousePressed", at, button_fields(button, true, 1, modifiers))
     }
 
-    fn release(
-        &mut self,
-        at: Point,
-        button: Button,
-        count: u32,
-        modifiers: &[Modifier],
-    ) -> anyhow::Result<()> {
-        let fields = json!({ "button": button.name(), "buttons": 0, "clickCount": count, "modifiers": bits(modifiers) });
-        self.mouse("mouseReleased", at, fields)
+    fn release(&mut self, at: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        self.mouse("mouseReleased", at, button_fields(button, false, 1, modifiers))
     }
 
-    fn mouse(&mut self, kind: &str, (x, y): Point, mut fields: Value) -> anyhow::Result<()> {
+    fn mouse(&mut self, kind: &str, at: Point, fields: Value) -> anyhow::Result<()> {
+        self.send_mouse(kind, at, fields)?;
+        self.next_frame()
+    }
+
+    /// Sends an event to the page, which may not have had a frame to act on it when this returns.
+    fn send_mouse(&mut self, kind: &str, (x, y): Point, mut fields: Value) -> anyhow::Result<()> {
         fields["type"] = kind.into();
         fields["x"] = x.into();
         fields["y"] = y.into();
         self.call("Input.dispatchMouseEvent", fields)?;
-        self.next_frame()
+        Ok(())
     }
 
     fn keyboard(&mut self, kind: &str, fields: &Value) -> anyhow::Result<()> {
@@ -204,6 +200,12 @@ impl Page {
         }
         result
     }
+}
+
+/// What Chromium wants to know of a press (`down`) or a release; `count` is 2 for the second of a double click.
+fn button_fields(button: Button, down: bool, count: u32, modifiers: &[Modifier]) -> Value {
+    let held = if down { button.bit() } else { 0 };
+    json!({ "button": button.name(), "buttons": held, "clickCount": count, "modifiers": bits(modifiers) })
 }
 
 fn bits(modifiers: &[Modifier]) -> u32 {

@@ -101,6 +101,28 @@ fn poses_without_their_files_wait_for_them() {
     assert_eq!(session.photo().unwrap().camera.fx, 520.5);
 }
 
+/// What the first drop gave may be changed by hand before the rest of the files comes.
+#[test]
+fn late_files_do_not_undo_what_was_done_meanwhile() {
+    let exported = |name: &str| {
+        let truth =
+            format!("{}\nbox <-> photo\n1 0 0 5\n0 1 0 6\n0 0 1 700\n0 0 0 1\n", crate::support::CAMERA_JSON);
+        text_file(name, &format!("{truth}\nother <-> photo\n1 0 0 1\n0 1 0 2\n0 0 1 800\n0 0 0 1\n"))
+    };
+    let mut session = small_session();
+    drop_files(&mut session, &[exported("truth.txt")], Some(PosesAs::Annotations));
+    let (photo, object, _) = session.selected_annotation().unwrap();
+    let moved = Pose::from_translation(DVec3::new(9.0, 9.0, 900.0));
+    let command = Command::SetPose { photo, object, camera_from_object: moved, source: PoseSource::Manual };
+    session.apply(command, NOW_MS).unwrap();
+    let mut late = crate::support::box_mesh("other.obj");
+    late.bytes = [&late.bytes[..], b"# another file"].concat().into();
+    drop_files(&mut session, &[late], None);
+    assert_eq!(session.scene().annotation(photo, object).unwrap().camera_from_object, moved);
+    assert_eq!(session.scene().annotations.len(), 2);
+    assert_eq!(session.missing_files().count(), 0);
+}
+
 #[test]
 fn bad_documents_are_refused_in_words() {
     let good = write_document(&with_pose(Pose::from_translation(DVec3::Z * 500.0)).document(Keep::Annotated));

@@ -217,7 +217,7 @@ impl ObjectEntry {
         }
         Ok(IncomingObject {
             key: content_key(&self.mesh_sha256, &self.mesh_file, place)?,
-            mesh_from_file,
+            mesh_from_file: Some(mesh_from_file),
             look: Some(Look {
                 name: self.name.clone(),
                 color: read_color(&self.color, place)?,

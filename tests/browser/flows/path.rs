@@ -28,7 +28,7 @@ const EXACT_MM: f64 = 1e-6;
 pub fn path(context: &mut Context) -> anyhow::Result<()> {
     let linemod = Linemod::open()?;
     let page = context.start("")?;
-    page.ensure_shown(&["Drop your files here", "A photo", "Open files…", "Try the example"])?;
+    page.wait_for_widgets(&["Drop your files here", "A photo", "Open files…", "Try the example"])?;
     let start = drop_sample(page, &linemod)?;
     let sphere = Sphere::of(&linemod.file(&linemod.sample(PHOTO)?.mesh)?)?;
 
@@ -50,7 +50,7 @@ fn drop_sample(page: &mut Page, linemod: &Linemod) -> anyhow::Result<Pose> {
     let sample = linemod.sample(PHOTO)?;
     page.drop_files(&linemod.files_of(sample)?)?;
     page.wait_for_state("state.question === 'poses_as'", PATIENCE)?;
-    page.ensure_shown(&["Start poses", "Reference", "Cancel"])?;
+    page.wait_for_widgets(&["Start poses", "Reference", "Cancel"])?;
     page.click_widget("Start poses")?;
     let state = page.wait_for_state("state.photos[0]?.poses.length === 1", PATIENCE)?;
 
@@ -122,9 +122,7 @@ fn change_depth(page: &mut Page, sphere: &Sphere) -> anyhow::Result<Pose> {
     let k = &state.shown_photo()?.k;
     let at = page.mouse_place(projected(k, &before.camera_from_object, sphere.center))?;
     let held = page.pick(at)?.context("Nothing is under the cursor")?;
-    for _ in 0..2 {
-        page.wheel(at, -100.0, &[Modifier::Shift])?;
-    }
+    page.wheel(at, 2, &[Modifier::Shift])?;
     let (_, after) = state_and_pose(page)?;
     let drift_px =
         distance_px(projected(k, &after.camera_from_object, held.point), page.image_from_page(at)?);

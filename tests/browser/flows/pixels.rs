@@ -24,7 +24,7 @@ const DISC_DEPTH_MM: f64 = 240.0;
 const PLACES: [Point; 3] = [(318.27, 236.81), (143.62, 120.45), (487.5, 351.08)];
 
 /// Notches of the wheel from a fitted photo to about eight screen pixels a photo pixel, at a factor of 1.2 each.
-const NOTCHES: u32 = 10;
+const NOTCHES: i32 = 10;
 
 /// A disc that faces the camera is an ellipse whose centre is the image of its centre.
 pub fn pixels(context: &mut Context) -> anyhow::Result<()> {
@@ -43,7 +43,8 @@ pub fn pixels(context: &mut Context) -> anyhow::Result<()> {
         let pose = placed(rotation, DISC_CENTER_MM, target);
         page.set_pose(photo.id, object, pose)?;
         measure(page, &pose)?;
-        zoom_to(page, place)?;
+        let at = page.mouse_place(place)?;
+        page.wheel(at, NOTCHES, &[])?;
         measure(page, &pose)?;
         page.command("fit_photo")?;
     }
@@ -55,14 +56,6 @@ fn rotations() -> [[[f64; 3]; 3]; 3] {
     let about_axis = axis_rotation(2, 0.5);
     let turned_over = axis_rotation(0, std::f64::consts::PI);
     [axis_rotation(2, 0.0), about_axis, product(&about_axis, &turned_over)]
-}
-
-fn zoom_to(page: &mut Page, place: Point) -> anyhow::Result<()> {
-    let at = page.mouse_place(place)?;
-    for _ in 0..NOTCHES {
-        page.wheel(at, -100.0, &[])?;
-    }
-    Ok(())
 }
 
 fn measure(page: &mut Page, pose: &Matrix) -> anyhow::Result<()> {
