@@ -1,4 +1,4 @@
-"""Draws the printed things: the tin's label (a texture of the data set), and a page of text and book spines for the clutter.
+"""Draws the printed things: the tin's label (a texture of the data set), and a page of text for the clutter.
 
 Usage: label.py OUT_FOLDER. Pillow's built-in font only.
 """
@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFilter, ImageFont
 # Width: once around the tin. The lower three quarters wrap the side, the upper quarter holds the lid's top.
 SIZE = (1024, 704)
 WRAP_TOP = SIZE[1] // 4
-CREAM, GREEN, DARK, GOLD, RED = (236, 228, 205), (38, 84, 66), (28, 36, 34), (201, 160, 78), (176, 58, 44)
+CREAM, GREEN, DARK, GOLD, RED = (236, 228, 205), (38, 84, 66), (28, 36, 34), (186, 154, 96), (176, 58, 44)
 
 
 def font(size):
@@ -52,7 +52,7 @@ def panel_front(draw, centre_x, top, bottom):
 
 def panel_side(draw, centre_x, top, bottom, lines):
     draw.rectangle((centre_x - 88, top + 136, centre_x + 88, bottom - 40), fill=(226, 214, 184))
-    centred(draw, (centre_x, top + 166), lines[0], 26, RED)
+    centred(draw, (centre_x, top + 166), lines[0], 23, RED)
     for k, line in enumerate(lines[1:]):
         centred(draw, (centre_x, top + 206 + 30 * k), line, 20, DARK)
     for k in range(26):
@@ -67,7 +67,14 @@ def tin_label():
     generator = random.Random(7)
     for _ in range(240):
         x, y = generator.uniform(0, width), generator.uniform(WRAP_TOP, height)
-        leaf(draw, x, y, generator.uniform(10, 24), generator.choice((-1, 1)), (30, 70, 55) if generator.random() < 0.6 else (52, 102, 80))
+        leaf(
+            draw,
+            x,
+            y,
+            generator.uniform(10, 24),
+            generator.choice((-1, 1)),
+            (30, 70, 55) if generator.random() < 0.6 else (52, 102, 80),
+        )
     # The lid's side: gold, with a line of ticks.
     lid = WRAP_TOP + int((height - WRAP_TOP) * 26 / 128)
     draw.rectangle((0, WRAP_TOP, width, lid), fill=GOLD)
@@ -77,8 +84,20 @@ def tin_label():
     draw.rectangle((0, lid + 26, 130, height - 40), fill=CREAM)
     draw.rectangle((width - 130, lid + 26, width, height - 40), fill=CREAM)
     half_back(image, lid)
-    panel_side(draw, width // 4, WRAP_TOP, height, ["HOW TO BREW", "one spoon a cup", "water at 95 °C", "wait 3 minutes", "add nothing"])
-    panel_side(draw, width * 3 // 4, WRAP_TOP, height, ["CONTENTS", "black tea 70 %", "mint 20 %", "cornflower 8 %", "patience 2 %"])
+    panel_side(
+        draw,
+        width // 4,
+        WRAP_TOP,
+        height,
+        ["HOW TO BREW", "one spoon a cup", "water at 95 °C", "wait 3 minutes", "add nothing"],
+    )
+    panel_side(
+        draw,
+        width * 3 // 4,
+        WRAP_TOP,
+        height,
+        ["CONTENTS", "black tea 70 %", "mint 20 %", "cornflower 8 %", "patience 2 %"],
+    )
     lid_top(draw)
     return image
 

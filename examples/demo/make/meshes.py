@@ -1,5 +1,6 @@
 """The five objects whose poses are known. Millimetres, origin near the centre, z up as they stand on the table."""
 
+import functools
 import math
 from dataclasses import dataclass, field
 
@@ -42,7 +43,7 @@ def all_models(texture_pixels):
 
 def tea_tin(texture_pixels):
     model = Model(1, "tea tin", [("tin", (230, 225, 210)), ("tin_metal", (205, 170, 95))], texture="obj_000001.png")
-    outline, arcs, perimeter = shapes.rounded_rectangle(TIN_WIDTH, TIN_DEPTH, TIN_RADIUS, 2.9)
+    outline, _, _ = shapes.rounded_rectangle(TIN_WIDTH, TIN_DEPTH, TIN_RADIUS, 2.9)
     half = TIN_HEIGHT / 2.0
     lid_z = half - 26.0
     body = [-half + 1.2 + (lid_z - 0.6 + half - 1.2) * i / 33 for i in range(34)]
@@ -55,19 +56,16 @@ def tea_tin(texture_pixels):
     rings = []
     for z, offset in levels:
         rings.append([(*inset(x, y, offset), z) for x, y in outline])
-    metal_below, metal_from = 1, len(body) + 2
-    regions = [1 if i <= metal_below else 0 for i in range(len(levels))]
+    regions = [1 if i <= 1 else 0 for i in range(len(levels))]
     shapes.loft(bm, rings, regions)
     close_ends(bm, region_bottom=1, region_top=0)
     uv_layer = bm.loops.layers.uv.new("uv")
     lid_start = half - 1.7
     for face in bm.faces:
-        is_top = face.normal_z_hint if hasattr(face, "normal_z_hint") else None
         centre = face.calc_center_median()
         on_lid_top = centre.z > lid_start and inset_distance(centre) > 5.0
         for loop in face.loops:
             loop[uv_layer].uv = tin_uv(loop.vert.co, centre, on_lid_top, half)
-    _ = (metal_from, is_top)
     finish(model, bm, math.radians(35), texture_pixels)
     return model
 
@@ -105,14 +103,15 @@ def tin_uv(position, face_centre, on_lid_top, half):
     return u, TIN_WRAP_FRACTION * min(max((position.z + half) / (2 * half), 0.0), 1.0)
 
 
+@functools.lru_cache(maxsize=None)
 def wrap_fraction(x, y):
     """How far around the tin a point is, 0 in the middle of the back, 0.5 in the middle of the front."""
-    outline, arcs, perimeter = wrap_fraction.outline
+    outline, arcs, perimeter = WRAP
     nearest = min(range(len(outline)), key=lambda i: (outline[i][0] - x) ** 2 + (outline[i][1] - y) ** 2)
     return (arcs[nearest] / perimeter + 0.5) % 1.0
 
 
-wrap_fraction.outline = shapes.rounded_rectangle(TIN_WIDTH, TIN_DEPTH, TIN_RADIUS, 0.1)
+WRAP = shapes.rounded_rectangle(TIN_WIDTH, TIN_DEPTH, TIN_RADIUS, 0.1)
 
 
 def close_ends(bm, region_bottom, region_top):
@@ -133,7 +132,16 @@ def pepper_mill():
     regions = [("walnut", (94, 58, 34)), ("walnut_light", (150, 104, 62)), ("steel", (190, 190, 188))]
     model = Model(2, "pepper mill", regions)
     model.symmetries_continuous = [{"axis": [0.0, 0.0, 1.0], "offset": [0.0, 0.0, 0.0]}]
-    body = [(27.0, 2.0), (28.5, 8.0), (28.0, 16.0), (24.5, 26.0), (20.0, 40.0), (17.2, 56.0), (16.6, 66.0), (18.5, 80.0)]
+    body = [
+        (27.0, 2.0),
+        (28.5, 8.0),
+        (28.0, 16.0),
+        (24.5, 26.0),
+        (20.0, 40.0),
+        (17.2, 56.0),
+        (16.6, 66.0),
+        (18.5, 80.0),
+    ]
     body += [(22.0, 92.0), (23.0, 100.0)]
     head = [(23.0, 107.5), (24.0, 112.0), (25.5, 122.0), (25.0, 134.0), (21.0, 146.0), (14.0, 153.0)]
     profile = [(0.0, 0.0, 0), (20.0, 0.0, 0), (25.5, 0.3, 0)]
@@ -153,7 +161,7 @@ def pepper_mill():
 
 
 def hex_nut():
-    model = Model(3, "hex nut", [("brass", (196, 158, 84)), ("brass_thread", (150, 116, 58))])
+    model = Model(3, "hex nut", [("brass", (190, 162, 106)), ("brass_thread", (146, 118, 70))])
     flats, height, samples = 66.0, 34.0, 72
     half, rim, bore, crest = height / 2, flats / 2 * 0.955, 21.5, 19.0
     angles = [2 * math.pi * i / samples for i in range(samples)]
@@ -172,15 +180,15 @@ def hex_nut():
         return [(radius * math.cos(a), radius * math.sin(a), z) for a in angles]
 
     # A real thread is a helix, which has no symmetry; grooves have.
-    pitch, turns = 3.2, 9
+    turns = 9
     thread = []
     for i in range(2 * turns + 1):
         z = half - 3.2 - (height - 6.4) * i / (2 * turns)
         thread.append((circle(bore if i % 2 == 0 else crest, z), 1))
-    _ = pitch
-    outside = [([chamfered(a, -1) for a in angles], 0), ([(hexagon(a) * math.cos(a), hexagon(a) * math.sin(a), 0.0) for a in angles], 0)]
-    outside += [([chamfered(a, 1) for a in angles], 0), (circle(rim, half), 0), (circle(24.0, half), 0)]
-    rings = [(circle(24.0, -half), 0), (circle(rim, -half), 0), *outside, *thread]
+    middle = [(hexagon(a) * math.cos(a), hexagon(a) * math.sin(a), 0.0) for a in angles]
+    below = [circle(24.0, -half), circle(rim, -half), [chamfered(a, -1) for a in angles]]
+    above = [[chamfered(a, 1) for a in angles], circle(rim, half), circle(24.0, half)]
+    rings = [(points, 0) for points in (*below, middle, *above)] + thread
     bm = bmesh.new()
     made = [shapes.ring(bm, points) for points, _ in rings]
     for i in range(len(made)):
@@ -212,7 +220,15 @@ def mug():
     model = Model(4, "mug", regions)
     outer = [(37.0, 12.0), (40.5, 24.0), (41.5, 42.0), (40.8, 62.0), (40.2, 80.0), (40.4, 92.0)]
     inner = [(36.4, 91.0), (35.9, 80.0), (36.3, 62.0), (36.9, 42.0), (35.6, 24.0), (30.0, 12.0), (20.0, 7.6)]
-    profile = [(0.0, 2.5, 2), (26.0, 2.5, 2), (27.0, 0.0, 2), (31.0, 0.0, 2), (32.0, 3.0, 2), (33.6, 6.5, 2), (36.0, 10.5, 2)]
+    profile = [
+        (0.0, 2.5, 2),
+        (26.0, 2.5, 2),
+        (27.0, 0.0, 2),
+        (31.0, 0.0, 2),
+        (32.0, 3.0, 2),
+        (33.6, 6.5, 2),
+        (36.0, 10.5, 2),
+    ]
     profile += [(r, z, 0 if z < 84.0 else 1) for r, z in shapes.smooth_open(outer, 5)]
     profile += [(40.2, 94.0, 1), (39.2, 95.4, 1), (38.2, 95.6, 1), (37.1, 94.6, 1)]
     profile += [(r, z, 1) for r, z in shapes.smooth_open(inner, 3)] + [(0.0, 6.8, 1)]
@@ -220,9 +236,21 @@ def mug():
     bm = bmesh.new()
     shapes.lathe(bm, [(r, z + lift, region) for r, z, region in profile], 80)
     # The handle's ends stop inside the wall.
-    path = [(38.6, 76.0), (46.0, 78.5), (58.0, 78.0), (67.5, 70.0), (70.0, 56.0), (66.0, 42.0), (57.0, 31.0), (47.0, 25.0), (38.4, 22.0)]
+    path = [
+        (38.6, 76.0),
+        (46.0, 78.5),
+        (58.0, 78.0),
+        (67.5, 70.0),
+        (70.0, 56.0),
+        (66.0, 42.0),
+        (57.0, 31.0),
+        (47.0, 25.0),
+        (38.4, 22.0),
+    ]
     path = shapes.smooth_open([(x, z + lift) for x, z in path], 4)
-    radii = [(4.6 + 1.4 * abs(2 * i / (len(path) - 1) - 1) ** 3, 7.6 + 2.6 * abs(2 * i / (len(path) - 1) - 1) ** 3) for i in range(len(path))]
+    # Thicker where it meets the body.
+    swell = [abs(2 * i / (len(path) - 1) - 1) ** 3 for i in range(len(path))]
+    radii = [(4.6 + 1.4 * s, 7.6 + 2.6 * s) for s in swell]
     shapes.sweep(bm, path, 18, radii, 0)
     finish(model, bm, math.radians(40))
     return model
@@ -232,12 +260,36 @@ def mug():
 
 
 def toy_car():
-    regions = [("paint_red", (178, 44, 36)), ("beech", (206, 164, 112)), ("paint_dark", (46, 46, 50)), ("paint_cream", (236, 226, 200)), ("steel", (190, 190, 188))]
+    regions = [
+        ("paint_red", (178, 44, 36)),
+        ("beech", (206, 164, 112)),
+        ("paint_dark", (46, 46, 50)),
+        ("paint_cream", (236, 226, 200)),
+        ("steel", (190, 190, 188)),
+    ]
     model = Model(5, "toy car", regions)
     bm = bmesh.new()
     # Heading along +x. Bonnet low in front, cabin behind the middle.
-    body = [(-62.0, 12.0), (-63.0, 26.0), (-58.0, 35.0), (-46.0, 40.0), (-38.0, 55.0), (-26.0, 63.0), (-6.0, 64.0), (8.0, 57.0)]
-    body += [(19.0, 42.0), (36.0, 38.5), (54.0, 34.0), (63.0, 26.0), (64.0, 14.0), (58.0, 9.0), (0.0, 8.0), (-56.0, 8.5)]
+    body = [
+        (-62.0, 12.0),
+        (-63.0, 26.0),
+        (-58.0, 35.0),
+        (-46.0, 40.0),
+        (-38.0, 55.0),
+        (-26.0, 63.0),
+        (-6.0, 64.0),
+        (8.0, 57.0),
+    ]
+    body += [
+        (19.0, 42.0),
+        (36.0, 38.5),
+        (54.0, 34.0),
+        (63.0, 26.0),
+        (64.0, 14.0),
+        (58.0, 9.0),
+        (0.0, 8.0),
+        (-56.0, 8.5),
+    ]
     outline = shapes.smooth_closed(body, 4)
     front_window = shapes.smooth_closed([(-8.0, 43.0), (-8.0, 56.0), (1.0, 54.5), (9.5, 45.0), (8.0, 42.5)], 4)
     rear_window = shapes.smooth_closed([(-35.0, 43.0), (-29.0, 54.0), (-15.0, 57.0), (-14.0, 44.0)], 4)
@@ -262,8 +314,25 @@ def toy_car():
 
 def wheel(bm, x, side):
     """Lies against the body's side with a little air, its axle goes in."""
-    profile = [(0.0, -3.0, 1), (4.0, -3.0, 1), (4.0, 1.0, 1), (15.0, 1.0, 2), (17.2, 2.0, 2), (18.0, 4.0, 2), (18.0, 9.0, 2)]
-    profile += [(17.2, 11.0, 2), (15.0, 12.0, 2), (12.6, 12.0, 2), (12.0, 10.6, 1), (5.4, 10.6, 1), (5.2, 13.2, 3), (3.6, 14.4, 3), (0.0, 14.8, 3)]
+    profile = [
+        (0.0, -3.0, 1),
+        (4.0, -3.0, 1),
+        (4.0, 1.0, 1),
+        (15.0, 1.0, 2),
+        (17.2, 2.0, 2),
+        (18.0, 4.0, 2),
+        (18.0, 9.0, 2),
+    ]
+    profile += [
+        (17.2, 11.0, 2),
+        (15.0, 12.0, 2),
+        (12.6, 12.0, 2),
+        (12.0, 10.6, 1),
+        (5.4, 10.6, 1),
+        (5.2, 13.2, 3),
+        (3.6, 14.4, 3),
+        (0.0, 14.8, 3),
+    ]
     turn = Matrix.Rotation(-math.pi / 2 if side > 0 else math.pi / 2, 4, "X")
     shapes.lathe(bm, profile, 40, Matrix.Translation((x, side * 23.0, 18.0)) @ turn)
 
@@ -301,6 +370,7 @@ def finish(model, bm, smooth_angle, texture_pixels=None):
             corners.append(numbers[key])
         triangles.append(corners)
         regions.append(polygon.material_index)
+    rows, triangles, regions = in_order(rows, triangles, regions, mesh)
     model.positions = np.array([mesh.vertices[row[0]].co[:] for row in rows], np.float32)
     model.normals = np.array([row[1] for row in rows], np.float32)
     model.colors = np.array([model.regions[row[2]][1] for row in rows], np.uint8)
@@ -310,6 +380,18 @@ def finish(model, bm, smooth_angle, texture_pixels=None):
         model.uvs = np.array([row[3] for row in rows], np.float32)
         model.colors = sample(texture_pixels, model.uvs)
     bpy.data.meshes.remove(mesh)
+
+
+def in_order(rows, triangles, regions, mesh):
+    """Vertices by where they are, triangles by their vertices: Blender's bevel numbers them differently each time."""
+    order = sorted(range(len(rows)), key=lambda i: (mesh.vertices[rows[i][0]].co[:], rows[i][1:]))
+    place = {old: new for new, old in enumerate(order)}
+    sorted_triangles = []
+    for corners, region in zip(triangles, regions):
+        a, b, c = (place[corner] for corner in corners)
+        sorted_triangles.append((min((a, b, c), (b, c, a), (c, a, b)), region))
+    sorted_triangles.sort()
+    return [rows[i] for i in order], [t for t, _ in sorted_triangles], [region for _, region in sorted_triangles]
 
 
 def sample(texture, uvs):
