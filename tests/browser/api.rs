@@ -160,8 +160,15 @@ impl Page {
 
     /// Waits until the page's state fulfils a condition: an expression about `state`, in JavaScript.
     pub fn wait_for_state(&mut self, condition: &str, timeout: Duration) -> anyhow::Result<State> {
-        self.wait_until(&format!("window.pinpose.state().then((state) => {condition})"), timeout)?;
-        self.state()
+        let deadline = Instant::now() + timeout;
+        loop {
+            let fulfilled: Option<State> =
+                self.ask(&format!("state().then((state) => ({condition}) ? state : null)"))?;
+            if let Some(state) = fulfilled {
+                return Ok(state);
+            }
+            ensure!(Instant::now() < deadline, "This did not become true in {timeout:?}: {condition}");
+        }
     }
 
     /// Waits until all that is under way is done and stored.
@@ -236,10 +243,16 @@ impl Page {
 
     /// Waits for a widget with this label, and clicks its middle with the mouse.
     pub fn click_widget(&mut self, label: &str) -> anyhow::Result<()> {
-        let widgets = self.wait_for_widgets(&[label])?;
-        let widget = widgets.iter().find(|widget| widget.label == label);
-        let place = widget.with_context(|| format!("\"{label}\" is gone again"))?.center();
-        self.click(place, Button::Left, &[])
+        let mut place = None;
+        // What opens is laid out anew once its size is known: it is clicked where it was seen twice.
+        loop {
+            let widgets = self.wait_for_widgets(&[label])?;
+            let seen = widgets.iter().find(|widget| widget.label == label).map(Widget::center);
+            match (place, seen) {
+                (Some(before), Some(now)) if before == now => return self.click(now, Button::Left, &[]),
+                _ => place = seen,
+            }
+        }
     }
 
     /// Waits until widgets with these labels can be seen. What opens takes a frame or two.

@@ -125,7 +125,11 @@ impl Page {
         self.hold(modifiers, |page| {
             page.mouse_move(at)?;
             for _ in 0..notches.unsigned_abs() {
-                page.send_mouse("mouseWheel", at, json!({ "deltaX": 0, "deltaY": delta, "modifiers": bits }))?;
+                page.send_mouse(
+                    "mouseWheel",
+                    at,
+                    json!({ "deltaX": 0, "deltaY": delta, "modifiers": bits }),
+                )?;
             }
             page.next_frame()
         })

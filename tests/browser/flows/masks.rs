@@ -9,7 +9,8 @@ use crate::data::{Linemod, Sample};
 use crate::page::Page;
 use crate::poses::{axis_rotation, product, rotation, with_translation};
 
-/// Both sample the pixels' centres; a GPU snaps vertices to 1/256 px, so few pixels of a rim may differ.
+/// Both sample the pixels' centres. A software GPU snaps vertices to 1/16 px, so that one in some twenty pixels along a rim
+/// may differ: five of an object as small as 800 px, and a smaller share of larger ones.
 const LEAST_IOU: f64 = 0.995;
 
 /// Those with black-box values, and an object that is one of the smallest in its photo.
@@ -35,8 +36,7 @@ fn compare(context: &mut Context, linemod: &Linemod, samples: &[&Sample]) -> any
         for (number, pose) in poses_around(&sample.camera_from_object).iter().enumerate() {
             let iou = iou_at(page, pose)?;
             let place = format!("{} at pose {number}", sample.mesh);
-            println!("{place} {iou}");
-            ensure!(iou >= 0.9 * LEAST_IOU, "{place}: the silhouettes' IoU is {iou:.4}");
+            ensure!(iou >= LEAST_IOU, "{place}: the silhouettes' IoU is {iou:.4}");
             if iou < worst {
                 (worst, worst_place) = (iou, place);
             }
@@ -62,7 +62,6 @@ fn iou(a: &GrayImage, b: &GrayImage) -> f64 {
     let pairs = || a.as_raw().iter().zip(b.as_raw()).map(|(&a, &b)| (a > 0, b > 0));
     let both = pairs().filter(|&(a, b)| a && b).count();
     let any = pairs().filter(|&(a, b)| a || b).count();
-    println!("differ {} of {}", any-both, any);
     both as f64 / any as f64
 }
 
@@ -73,7 +72,7 @@ fn poses_around(truth: &Matrix) -> [Matrix; 5] {
     let turned = |axis, angle| product(&axis_rotation(axis, angle), &rotation);
     [
         *truth,
-        with_translation(rotation, t.map(|value| value * 1.3)),
+        with_translation(rotation, t.map(|value| value * 1.1)),
         with_translation(turned(1, 0.7), t.map(|value| value * 0.5)),
         with_translation(turned(0, -1.9), [t[0] + 13.7, t[1] - 8.1, t[2]]),
         with_translation(turned(2, 2.5), [-0.55 * t[2], -0.41 * t[2], t[2]]),

@@ -53,6 +53,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(BOTH, "pixels", pixels::pixels),
     Flow::on(WEBGL, "view", view::view),
     Flow::on(WEBGPU, "view-webgpu", view::view).long(),
+    Flow::on(WEBGL, "reference", view::reference),
     Flow::on(WEBGL, "idle", idle::idle),
     Flow::on(WEBGPU, "idle-webgpu", idle::idle).long(),
     Flow::on(BOTH, "drag-cost", idle::drag_cost),

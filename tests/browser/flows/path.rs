@@ -61,8 +61,8 @@ fn drop_sample(page: &mut Page, linemod: &Linemod) -> anyhow::Result<Pose> {
     for (read, written) in
         pose.camera_from_object.iter().flatten().zip(sample.camera_from_object.iter().flatten())
     {
-        // The file's rotation has eight digits, and is put back onto SO(3).
-        ensure!((read - written).abs() < 1e-7, "{read} was read, {written} is in the file");
+        // The file's rotation has eight digits, its columns' products are off by some 1e-7, and it is put back onto SO(3).
+        ensure!((read - written).abs() < 1e-6, "{read} was read, {written} is in the file");
     }
     Ok(pose)
 }
@@ -122,7 +122,7 @@ fn change_depth(page: &mut Page, sphere: &Sphere) -> anyhow::Result<Pose> {
     let k = &state.shown_photo()?.k;
     let at = page.mouse_place(projected(k, &before.camera_from_object, sphere.center))?;
     let held = page.pick(at)?.context("Nothing is under the cursor")?;
-    page.wheel(at, 2, &[Modifier::Shift])?;
+    page.wheel(at, 1, &[Modifier::Shift])?;
     let (_, after) = state_and_pose(page)?;
     let drift_px =
         distance_px(projected(k, &after.camera_from_object, held.point), page.image_from_page(at)?);
@@ -132,9 +132,9 @@ fn change_depth(page: &mut Page, sphere: &Sphere) -> anyhow::Result<Pose> {
         2.0 * (k[0][0] * k[1][1]).sqrt() * sphere.radius / depth
     };
     let wider_px = width_px(&after) - width_px(&before);
-    println!("   two notches with Shift: {wider_px:.3} px wider");
-    // The surface point sets the step, the sphere's centre behind it is what is measured: some per cent of 2 px.
-    ensure!((wider_px - 2.0).abs() < 0.2, "Two notches made the silhouette {wider_px} px wider");
+    println!("   a notch with Shift: {wider_px:.3} px wider");
+    // The surface point sets the step, the sphere's centre behind it is what is measured: some per cent of 1 px.
+    ensure!((wider_px - 1.0).abs() < 0.1, "A notch made the silhouette {wider_px} px wider");
     Ok(after)
 }
 

@@ -4,6 +4,7 @@ use anyhow::{Context as _, ensure};
 use image::RgbaImage;
 
 use crate::api::Matrix;
+use crate::api::PATIENCE;
 use crate::context::Context;
 use crate::data::{self, CAMERA, disc_obj};
 use crate::input::Point;
@@ -34,8 +35,7 @@ pub fn pixels(context: &mut Context) -> anyhow::Result<()> {
     page.command("toggle_outline")?;
     // The viewport as wide as the page shows the photo at about its own size.
     page.command("toggle_panels")?;
-    let state =
-        page.wait_for_state("!state.viewport.panels && !state.busy && state.saved", crate::api::PATIENCE)?;
+    let state = page.wait_for_state("!state.viewport.panels && !state.busy && state.saved", PATIENCE)?;
     let (photo, object) = (state.shown_photo()?, state.selection.object.context("No disc")?);
     ensure!(photo.k == CAMERA, "K is {:?}", photo.k);
     for (place, rotation) in PLACES.into_iter().zip(rotations()) {

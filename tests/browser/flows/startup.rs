@@ -16,14 +16,6 @@ pub fn starts(context: &mut Context) -> anyhow::Result<()> {
     let perf = context.start("")?.perf()?;
     ensure!(perf.backend == backend, "The page draws with {}, not with {backend}", perf.backend);
     println!("   start_ms {:.0}", perf.start_ms);
-    let page = context.page()?;
-    let l = crate::data::Linemod::open()?;
-    page.load(&l.files_of(l.sample("000019.png")?)?)?;
-    for what in ["window.pinpose.state()", "window.pinpose.widgets()", "window.pinpose.perf()", "new Promise((resolve) => requestAnimationFrame(() => resolve()))", "1"] {
-        let t = std::time::Instant::now();
-        for _ in 0..10 { page.eval(what)?; }
-        println!("{what} {:?}", t.elapsed() / 10);
-    }
     Ok(())
 }
 

@@ -2,8 +2,8 @@
 
 use anyhow::ensure;
 
-use super::start_with_sample;
-use crate::api::State;
+use super::{PHOTO, start_with_sample};
+use crate::api::{PATIENCE, State};
 use crate::context::Context;
 use crate::data::Linemod;
 use crate::input::{Button, Point};
@@ -13,8 +13,8 @@ use crate::poses::{angle_between, distance_px, projected};
 /// egui's positions are `f32`: at 800 CSS pixels they are exact to 1e-4, and a photo pixel is about one.
 const EXACT_PX: f64 = 0.01;
 
-/// In the photo, away from the object.
-const GROUND: Point = (450.0, 350.0);
+/// In the photo, on the object.
+const ON_OBJECT: Point = (221.0, 178.0);
 
 pub fn view(context: &mut Context) -> anyhow::Result<()> {
     let (page, state) = start_with_sample(context, &Linemod::open()?)?;
@@ -27,7 +27,7 @@ pub fn view(context: &mut Context) -> anyhow::Result<()> {
 }
 
 fn zoom_keeps_the_point(page: &mut Page) -> anyhow::Result<()> {
-    let at = page.mouse_place((221.0, 178.0))?;
+    let at = page.mouse_place(ON_OBJECT)?;
     let (before, zoom_before) = (page.image_from_page(at)?, page.state()?.viewport.zoom);
     page.wheel(at, 3, &[])?;
     let (after, zoom) = (page.image_from_page(at)?, page.state()?.viewport.zoom);
@@ -39,7 +39,7 @@ fn zoom_keeps_the_point(page: &mut Page) -> anyhow::Result<()> {
 }
 
 fn pan_moves_the_point(page: &mut Page) -> anyhow::Result<()> {
-    let from = page.mouse_place((221.0, 178.0))?;
+    let from = page.mouse_place(ON_OBJECT)?;
     let to = (from.0 + 50.0, from.1 + 30.0);
     let (scene, before) = (page.state()?, page.image_from_page(from)?);
     page.drag(from, to, Button::Middle, 2, &[])?;
@@ -50,8 +50,6 @@ fn pan_moves_the_point(page: &mut Page) -> anyhow::Result<()> {
 }
 
 fn fit_and_zoom_to_object(page: &mut Page, start: &State) -> anyhow::Result<()> {
-    let ground = page.mouse_place(GROUND)?;
-    // Zoomed in, the place may be outside the viewport: fitted by key first, then by mouse.
     page.key("0", &[])?;
     let fitted = page.state()?.viewport.zoom;
     ensure!(
@@ -73,7 +71,7 @@ fn fit_and_zoom_to_object(page: &mut Page, start: &State) -> anyhow::Result<()> 
     );
 
     let corner = (x + 20.0, y + 60.0);
-    ensure!(page.pick(corner)?.is_none() && ground.0 > x, "The viewport's corner is not free");
+    ensure!(page.pick(corner)?.is_none(), "The viewport's corner is not free");
     page.double_click(corner, Button::Left)?;
     let zoom = page.state()?.viewport.zoom;
     ensure!(zoom == fitted, "A double click on the ground went to zoom {zoom}");
@@ -85,18 +83,21 @@ fn panels(page: &mut Page) -> anyhow::Result<()> {
     let with_panels = width(page)?;
     page.key("F9", &[])?;
     // The state tells where the viewport was in the last frame.
-    let without = page.wait_for_state("state.viewport.rect[2] > 700", crate::api::PATIENCE)?.viewport.rect[2];
+    let without = page.wait_for_state("state.viewport.rect[2] > 700", PATIENCE)?.viewport.rect[2];
     ensure!(
         without > with_panels + 100.0,
         "Without panels the viewport is {without} wide, with them {with_panels}"
     );
     page.key("F9", &[])?;
-    page.wait_for_state(&format!("state.viewport.rect[2] === {with_panels}"), crate::api::PATIENCE)?;
+    page.wait_for_state(&format!("state.viewport.rect[2] === {with_panels}"), PATIENCE)?;
     Ok(())
 }
 
 /// Each setting changes what is on the screen, and back.
 fn overlay_looks(page: &mut Page) -> anyhow::Result<()> {
+    // The double click on the ground was a click there too, which selects nothing.
+    let on_object = page.mouse_place(ON_OBJECT)?;
+    page.click(on_object, Button::Left, &[])?;
     page.key("f", &[])?;
     let plain = object_on_screen(page)?;
     page.set_overlay_opacity(0.2)?;
@@ -147,4 +148,33 @@ fn tools(page: &mut Page) -> anyhow::Result<()> {
         "With M a left drag did not move the object"
     );
     Ok(())
+}
+
+/// A reference is a dashed magenta line around its object's image, whether or not the user's own objects have lines.
+pub fn reference(context: &mut Context) -> anyhow::Result<()> {
+    let linemod = Linemod::open()?;
+    let page = context.start("")?;
+    page.drop_files(&linemod.files_of(linemod.sample(PHOTO)?)?)?;
+    page.click_widget("Reference")?;
+    page.wait_for_state(
+        "state.references.length === 1 && state.objects.length === 1 && !state.busy",
+        PATIENCE,
+    )?;
+    let lined = magenta_pixels(page)?;
+    page.command("toggle_outline")?;
+    let unlined = magenta_pixels(page)?;
+    println!("   the reference is {lined} pixels, {unlined} without outlines");
+    ensure!(lined > 50, "The reference is not drawn");
+    ensure!(unlined > 50, "Without outlines the reference is gone");
+    Ok(())
+}
+
+/// Pixels of the reference's colour around the true pose.
+fn magenta_pixels(page: &mut Page) -> anyhow::Result<usize> {
+    let (left, top) = page.page_from_image((190.0, 148.0))?;
+    let (right, bottom) = page.page_from_image((253.0, 208.0))?;
+    let screenshot = page.screenshot()?;
+    let [left, top, right, bottom] = [left, top, right, bottom].map(|value| value as u32);
+    let area = image::imageops::crop_imm(&screenshot, left, top, right - left, bottom - top).to_image();
+    Ok(area.pixels().filter(|pixel| pixel[0] > 220 && pixel[1] < 110 && pixel[2] > 180).count())
 }
