@@ -14,7 +14,8 @@ struct Frame {
     photo: vec4<f32>,
     // sRGB, and the opacity over all objects
     background: vec4<f32>,
-    // Half the outline's width in target pixels (0: no outline), the same for the selected object, dash length, 0
+    // Half the outline's width in target pixels (0: no outline), the same for the selected object, and for references
+    // (0: there are none), the length of their dashes
     outline: vec4<f32>,
 }
 

@@ -23,10 +23,10 @@ fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
 }
 
 // The line along the border between two ids, centred on it: colour and coverage.
-fn outline_at(ids: texture_2d<f32>, texel: vec2<i32>) -> vec4<f32> {
+fn outline_at(ids: texture_2d<f32>, texel: vec2<i32>, half_widths: vec2<f32>) -> vec4<f32> {
     let last = vec2<i32>(textureDimensions(ids)) - 1;
     let here = textureLoad(ids, texel, 0);
-    let reach = i32(ceil(frame.outline.y));
+    let reach = i32(ceil(half_widths.y));
     var best = vec4<f32>(0.0);
     for (var y = -reach; y <= reach; y++) {
         for (var x = -reach; x <= reach; x++) {
@@ -34,7 +34,7 @@ fn outline_at(ids: texture_2d<f32>, texel: vec2<i32>) -> vec4<f32> {
             if (abs(there.a - here.a) > 0.001) {
                 // The selected object's line goes over the others', an object's over the background's.
                 let winner = select(there, here, here.a > there.a);
-                let half_width = select(frame.outline.x, frame.outline.y, winner.a > 0.5);
+                let half_width = select(half_widths.x, half_widths.y, winner.a > 0.5);
                 // The border is half a pixel before the first pixel that differs.
                 let distance = length(vec2<f32>(f32(x), f32(y))) - 0.5;
                 let coverage = clamp(half_width + 0.5 - distance, 0.0, 1.0);
@@ -58,13 +58,13 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     color = color * (1.0 - overlay.a) + overlay.rgb;
 
     if (frame.outline.x > 0.0) {
-        let line = outline_at(id_texture, texel);
+        let line = outline_at(id_texture, texel, frame.outline.xy);
         color = mix(color, line.rgb, line.a);
     }
     if (frame.outline.z > 0.0) {
         // References are dashed: told apart by more than colour.
-        let dash = fract((target_position.x + target_position.y) / (2.0 * frame.outline.z));
-        let ghost = outline_at(ghost_texture, texel);
+        let dash = fract((target_position.x + target_position.y) / (2.0 * frame.outline.w));
+        let ghost = outline_at(ghost_texture, texel, frame.outline.zz);
         color = mix(color, ghost.rgb, ghost.a * select(0.0, 1.0, dash < 0.6));
     }
     return vec4<f32>(color, 1.0);

@@ -18,7 +18,7 @@ pub use export::{ExportKind, export_picture, raster_png, silhouette_png};
 #[cfg(not(target_arch = "wasm32"))]
 pub use gpu::GpuError;
 pub use gpu::{Gpu, Usage};
-pub use picture::{Item, Outline, PhotoLayer, Picture, picture_of};
+pub use picture::{GHOST_WIDTH_POINTS, Item, Outline, PhotoLayer, Picture, picture_of};
 pub use pipelines::{SHADERS, ShaderSource};
 pub use readback::{PixelsPending, ReadBackError};
 pub use renderer::{Layer, Renderer};

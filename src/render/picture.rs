@@ -7,6 +7,9 @@ use crate::mesh::Mesh;
 use crate::photo::Pixels;
 use crate::scene::{MeshAsset, ObjectId, PhotoId, Rgb, Scene, reference_color};
 
+/// The width of a reference's outline on screen.
+pub const GHOST_WIDTH_POINTS: f32 = 2.25;
+
 /// One picture: a part of a photo with meshes over it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
@@ -20,6 +23,8 @@ pub struct Picture {
     /// 0 to 1, over all items.
     pub overlay_opacity: f32,
     pub outline: Option<Outline>,
+    /// Of the ghosts' outlines, in target pixels; they are there whether or not the items have theirs.
+    pub ghost_width_px: f32,
     /// Around the photo.
     pub background: Rgb,
 }
@@ -100,6 +105,7 @@ pub fn picture_of(
         ghosts: ghosts_of(scene, photo),
         overlay_opacity: 1.0,
         outline: Some(Outline::for_scale(1.0)),
+        ghost_width_px: GHOST_WIDTH_POINTS,
         background: Rgb([24, 26, 31]),
     })
 }

@@ -6,6 +6,9 @@ use super::{Item, Picture};
 use crate::math::clip_from_camera;
 use crate::scene::Rgb;
 
+/// A dash of a reference's outline is so many times as long as the line is wide.
+const DASH_PER_WIDTH: f32 = 2.5;
+
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct FrameUniform {
@@ -37,9 +40,8 @@ impl FrameUniform {
         let outline = picture
             .outline
             .map_or([0.0; 2], |outline| [outline.width_px / 2.0, outline.selected_width_px / 2.0]);
-        let ghosts = if picture.ghosts.is_empty() { 0.0 } else { 5.0 };
-        // References are always outlined: they have no other look.
-        let reach = if outline[1] > 0.0 || ghosts == 0.0 { outline[1] } else { 1.0 };
+        let has_ghosts = !picture.ghosts.is_empty();
+        let ghost_half_width = if has_ghosts { picture.ghost_width_px / 2.0 } else { 0.0 };
         let [red, green, blue] = unit_color(picture.background);
         Self {
             clip_from_camera: clip_from_camera(&picture.camera, &rect).as_mat4().to_cols_array_2d(),
@@ -59,7 +61,7 @@ impl FrameUniform {
                 if photo.is_some() { 1.0 } else { 0.0 },
             ],
             background: [red, green, blue, picture.overlay_opacity],
-            outline: [outline[0], reach, ghosts, 0.0],
+            outline: [outline[0], outline[1], ghost_half_width, DASH_PER_WIDTH * picture.ghost_width_px],
         }
     }
 }

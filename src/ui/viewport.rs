@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use egui::{Align2, Area, Id, Order, RichText, Sense, Ui, Vec2};
 
 use super::{Surroundings, theme};
-use crate::render::{Outline, Picture, Renderer, picture_of};
+use crate::render::{GHOST_WIDTH_POINTS, Outline, Picture, Renderer, picture_of};
 use crate::scene::AnnotationState;
 use crate::session::{Command, Session};
 
@@ -70,6 +70,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
     let mut picture = picture_of(session.scene(), photo.id, around.pixels.clone(), session.selected())?;
     picture.rect = around.view.visible_rect();
     picture.overlay_opacity = session.look().overlay_opacity;
+    picture.ghost_width_px = GHOST_WIDTH_POINTS * pixels_per_point;
     picture.outline = session.look().outline.then(|| Outline::for_scale(pixels_per_point));
     Some(picture)
 }

@@ -77,22 +77,13 @@ impl Page {
         self.release(at, button, &[])
     }
 
+    /// Without a frame between press and release: on a slow renderer egui would take it for a long press.
     pub fn click(&mut self, at: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {
-        self.hold(modifiers, |page| {
-            page.mouse_move(at)?;
-            page.press(at, button, modifiers)?;
-            page.release(at, button, modifiers)
-        })
+        self.hold(modifiers, |page| page.clicks(at, button, 1, modifiers))
     }
 
-    /// Two clicks without a frame between them: a slow renderer's frames are as long as a double click may take.
     pub fn double_click(&mut self, at: Point, button: Button) -> anyhow::Result<()> {
-        self.mouse_move(at)?;
-        for count in [1, 2] {
-            self.send_mouse("mousePressed", at, button_fields(button, true, count, &[]))?;
-            self.send_mouse("mouseReleased", at, button_fields(button, false, count, &[]))?;
-        }
-        self.next_frame()
+        self.clicks(at, button, 2, &[])
     }
 
     /// Presses, moves in equal steps, releases.
@@ -149,6 +140,21 @@ impl Page {
             page.keyboard("keyDown", &fields)?;
             page.keyboard("keyUp", &fields)
         })
+    }
+
+    fn clicks(
+        &mut self,
+        at: Point,
+        button: Button,
+        count: u32,
+        modifiers: &[Modifier],
+    ) -> anyhow::Result<()> {
+        self.mouse_move(at)?;
+        for number in 1..=count {
+            self.send_mouse("mousePressed", at, button_fields(button, true, number, modifiers))?;
+            self.send_mouse("mouseReleased", at, button_fields(button, false, number, modifiers))?;
+        }
+        self.next_frame()
     }
 
     fn move_holding(&mut self, to: Point, button: Button, modifiers: &[Modifier]) -> anyhow::Result<()> {

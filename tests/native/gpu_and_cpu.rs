@@ -89,6 +89,7 @@ fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose
         ghosts: Vec::new(),
         overlay_opacity: 1.0,
         outline: None,
+        ghost_width_px: 0.0,
         background: Rgb([0; 3]),
     }
 }
@@ -159,4 +160,21 @@ fn centroid(rgba: &[u8], width: usize) -> DVec2 {
     }
     assert!(weight > 0.0, "nothing was drawn");
     sum / weight
+}
+
+/// A reference is drawn as a dashed outline, also where the objects' own outlines are switched off.
+#[test]
+fn references_are_outlined_whether_or_not_objects_are() {
+    let Some(mut renderer) = renderer() else { return };
+    let camera = Intrinsics::pinhole(500.0, 500.0, 99.5, 74.5, 200, 150);
+    let whole = ImageRect::of_photo(200, 150);
+    let mut picture = picture(camera, whole, disc(40.0), Pose::from_translation(DVec3::Z * 500.0));
+    picture.ghosts = std::mem::take(&mut picture.items);
+    picture.ghosts[0].color = Rgb([255, 64, 220]);
+    picture.ghost_width_px = 2.0;
+    let pending = renderer.draw_and_read(&picture, [200, 150], Layer::Picture);
+    let pixels = pending.wait(renderer.gpu()).unwrap();
+    let drawn = pixels.rgba.chunks_exact(4).filter(|texel| texel[0] > 128).count();
+    // Around a circle of 40 px: some 250 px long, 2 px wide, three fifths of it dashes.
+    assert!((200..400).contains(&drawn), "{drawn} pixels of the line are drawn");
 }

@@ -65,7 +65,7 @@ def arguments():
     parser.add_argument("--scene", type=int, default=0, help="0: all")
     parser.add_argument("--frames", default="", help="all if not given")
     parser.add_argument("--scale", type=int, default=100, help="percent; less than 100 is for looking only")
-    parser.add_argument("--samples", type=int, default=16)
+    parser.add_argument("--samples", type=int, default=20)
     parser.add_argument("--photo-only", action="store_true")
     parser.add_argument("--truth-only", action="store_true")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])

@@ -3,8 +3,7 @@
 use anyhow::{Context as _, ensure};
 use image::RgbaImage;
 
-use crate::api::Matrix;
-use crate::api::PATIENCE;
+use crate::api::{Matrix, PATIENCE};
 use crate::context::Context;
 use crate::data::{self, CAMERA, disc_obj};
 use crate::input::Point;
