@@ -12,12 +12,17 @@ pub mod checks;
 pub mod chromium;
 pub mod server;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The folder with the workspace's `Cargo.toml` and `index.html`.
+///
+/// Cargo names the package's folder anew at every start. What was compiled in may be another checkout's: two that share a
+/// target folder share this program too.
 pub fn workspace_root() -> PathBuf {
-    let tool = Path::new(env!("CARGO_MANIFEST_DIR"));
-    tool.parent().unwrap_or(tool).to_path_buf()
+    let compiled_in = || env!("CARGO_MANIFEST_DIR").into();
+    let package = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(compiled_in));
+    let root = package.ancestors().find(|folder| folder.join("index.html").is_file());
+    root.unwrap_or(&package).to_path_buf()
 }
 
 /// A cargo command that works on the workspace, with the cargo that started this tool.
