@@ -8,7 +8,6 @@ use crate::platform::{PageAnswer, PageState, Perf, Picked, Widget};
 pub fn to_js(answer: PageAnswer) -> Result<JsValue, JsValue> {
     match answer {
         PageAnswer::Nothing => Ok(JsValue::UNDEFINED),
-        PageAnswer::Json(text) => js_sys::JSON::parse(&text),
         PageAnswer::Bytes(bytes) => Ok(js_sys::Uint8Array::from(&bytes[..]).into()),
         PageAnswer::Point { x, y } => from_json(&json!({"x": x, "y": y})),
         PageAnswer::State(state) => from_json(&state_json(&state)?),

@@ -274,7 +274,7 @@ impl PinPose {
     }
 
     /// Gives complete loads to the session.
-    pub(super) fn take_loaded(&mut self, _ctx: &egui::Context) {
+    pub(super) fn take_loaded(&mut self) {
         let (decoded, complete) = self.loading.poll();
         for (sha256, pixels) in decoded {
             self.photos.insert(sha256, pixels);

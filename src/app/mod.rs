@@ -118,7 +118,7 @@ impl eframe::App for PinPose {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
         self.performance.begin_frame(frame.info().cpu_usage);
         self.take_restored();
-        self.take_loaded(ctx);
+        self.take_loaded();
         self.take_dropped(ctx);
         self.answer_calls(ctx);
         self.take_keys(ctx);

@@ -60,13 +60,8 @@ pub enum PageValue {
 #[derive(Debug, Clone, PartialEq)]
 pub enum PageAnswer {
     Nothing,
-    /// JSON text.
-    Json(String),
     State(PageState),
-    Point {
-        x: f64,
-        y: f64,
-    },
+    Point { x: f64, y: f64 },
     Picked(Option<Picked>),
     Widgets(Vec<Widget>),
     Bytes(Vec<u8>),

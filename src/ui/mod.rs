@@ -71,13 +71,13 @@ pub struct Asked {
 /// Draws a whole frame.
 pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, state: &mut UiState) -> Asked {
     let mut asked = Asked::default();
-    Panel::top("top bar").frame(theme::bar_frame(ui)).show(ui, |ui| {
+    Panel::top("top bar").frame(theme::bar_frame()).show(ui, |ui| {
         top_bar::draw(ui, session, around, &mut asked);
     });
     // An empty scene has nothing to list.
     if !state.panels_hidden && !session.scene().is_empty() {
         Panel::left("side panel")
-            .frame(theme::panel_frame(ui))
+            .frame(theme::panel_frame())
             .exact_size(theme::PANEL_WIDTH)
             .resizable(false)
             .show(ui, |ui| side_panel(ui, session, &mut state.camera_form, &mut asked.commands));

@@ -90,11 +90,11 @@ fn visuals() -> egui::Visuals {
     visuals
 }
 
-pub fn bar_frame(_ui: &egui::Ui) -> Frame {
+pub fn bar_frame() -> Frame {
     Frame::NONE.fill(BAR).inner_margin(Margin::symmetric(8, 5))
 }
 
-pub fn panel_frame(_ui: &egui::Ui) -> Frame {
+pub fn panel_frame() -> Frame {
     Frame::NONE.fill(PANEL).inner_margin(Margin { left: 12, right: 4, top: 4, bottom: 4 })
 }
 
