@@ -5,6 +5,7 @@
 mod annotation;
 mod asset;
 mod color;
+mod look;
 mod placement;
 
 use std::collections::BTreeMap;
@@ -17,6 +18,7 @@ use crate::math::{Intrinsics, Pose};
 pub use annotation::{Annotation, AnnotationState, PoseSource};
 pub use asset::{MeshAsset, PhotoAsset, Sha256};
 pub use color::{Rgb, object_color, reference_color};
+pub use look::{Layers, Look, OverlayMode, PhotoAdjustment};
 pub use placement::untouched_pose;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
