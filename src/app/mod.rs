@@ -12,6 +12,7 @@ mod jobs;
 mod loading;
 mod performance;
 mod photo_cache;
+mod pictures;
 mod widgets;
 
 use std::rc::Rc;
@@ -38,6 +39,8 @@ pub struct PinPose {
     backend: String,
     calls: PageCalls,
     answers: answers::Answers,
+    pictures: pictures::Pictures,
+    ctx: egui::Context,
     performance: performance::Performance,
     events: events::Events,
     /// Read at the start of each frame: where the pointer is over the viewport, in its physical pixels.
@@ -79,6 +82,8 @@ impl PinPose {
             backend,
             calls: start.calls,
             answers: answers::Answers::default(),
+            pictures: pictures::Pictures::default(),
+            ctx: ctx.clone(),
             performance: performance::Performance::default(),
             events: events::Events::default(),
             pointer: None,
@@ -124,6 +129,7 @@ impl eframe::App for PinPose {
         self.take_keys(ctx);
         self.take_gestures(ctx);
         self.want_pixels();
+        self.make_pictures(ctx);
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
