@@ -102,7 +102,7 @@ fn model_infos() -> PerImage<ModelInfo> {
 
 fn load_mesh(name: &str) -> Mesh {
     let bytes = fs::read(demo_folder().join("bop/models").join(name)).unwrap();
-    let loaded = mesh::load(name, &bytes).unwrap();
+    let loaded = mesh::load(name, &bytes, &mesh::no_companions).unwrap();
     if name.ends_with("ply") {
         assert_eq!(loaded.warnings, Vec::<String>::new(), "{name}");
     }

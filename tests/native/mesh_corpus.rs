@@ -1,8 +1,10 @@
 //! Every mesh of the shared data loads, or is refused for a reason that is written down here.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pinpose::mesh::{self, LoadedMesh, MeshError};
@@ -54,7 +56,7 @@ fn mesh_files(folder: &Path) -> Vec<PathBuf> {
             let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
             if path.is_dir() {
                 pending.push(path);
-            } else if ["ply", "obj", "glb", "gltf"].contains(&extension.as_str()) {
+            } else if ["ply", "obj", "stl", "glb", "gltf", "off"].contains(&extension.as_str()) {
                 files.push(path);
             }
         }
@@ -63,10 +65,21 @@ fn mesh_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+fn files_by_key(folder: &Path) -> BTreeMap<String, PathBuf> {
+    let entries =
+        fs::read_dir(folder).expect("the data can be listed").map(|entry| entry.expect("listed").path());
+    let files = entries.filter(|path| path.is_file());
+    files.map(|path| (mesh::companion_key(&path.to_string_lossy()), path)).collect()
+}
+
 fn load(path: &Path) -> Result<LoadedMesh, MeshError> {
     let bytes = fs::read(path).expect("the file can be read");
     let started = Instant::now();
-    let loaded = mesh::load(&path.file_name().unwrap_or_default().to_string_lossy(), &bytes);
+    let folder = path.parent().unwrap_or(path);
+    let beside = files_by_key(folder);
+    let find =
+        |key: &str| beside.get(key).map(|path| Arc::from(fs::read(path).expect("the file can be read")));
+    let loaded = mesh::load(&path.file_name().unwrap_or_default().to_string_lossy(), &bytes, &find);
     assert!(started.elapsed() < LONGEST_LOAD, "{} took {:?}", path.display(), started.elapsed());
     loaded
 }
