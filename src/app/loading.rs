@@ -190,8 +190,8 @@ impl Loading {
             Parsed::Poses(poses) => load.batch.poses.push(poses),
             Parsed::Workspace(workspace) => {
                 load.opening = Some((workspace.document, Origin::Workspace));
-                for file in workspace.files {
-                    self.take_file(load, file, &[]);
+                for FileWithCompanions { file, companions } in workspace.files {
+                    self.take_file(load, file, &companions);
                 }
             }
         }

@@ -64,7 +64,7 @@ fn describe(file: &NamedFile, parsed: &Parsed, warnings: &[String]) -> Value {
             json!({
                 "name": workspace.document.name,
                 "poses": workspace.document.pose_count(),
-                "files": workspace.files.iter().map(|file| file.name.as_str()).collect::<Vec<_>>(),
+                "files": workspace.files.iter().map(|entry| entry.file.name.as_str()).collect::<Vec<_>>(),
             }),
         ),
     };

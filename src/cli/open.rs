@@ -99,7 +99,9 @@ impl Opened {
             Ok((Parsed::Poses(poses), _)) => self.batch.poses.push(poses),
             Ok((Parsed::Workspace(workspace), _)) => {
                 self.document = Some(workspace.document);
-                workspace.files.iter().for_each(|file| self.take(file, &[], false));
+                for FileWithCompanions { file, companions } in workspace.files {
+                    self.take(&file, &companions, false);
+                }
             }
             Err(problem) if lenient => eprintln!("pinpose: {problem}: left out"),
             Err(problem) => self.problems.push(problem),

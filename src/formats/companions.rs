@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::{FileKind, NamedFile, classify};
 use crate::mesh::{companion_key, companion_names};
+use crate::scene::CompanionFile;
 
 /// A file, and those that it asks for.
 #[derive(Debug, Clone)]
@@ -42,6 +43,12 @@ pub fn with_companions(files: Vec<NamedFile>) -> Vec<FileWithCompanions> {
         .filter(|((file, kind), _)| !(may_belong(*kind) && taken.contains(&companion_key(&file.name))))
         .map(|((file, _), companions)| FileWithCompanions { file, companions })
         .collect()
+}
+
+/// The companions as a mesh keeps them.
+pub fn kept(companions: &[NamedFile]) -> Vec<CompanionFile> {
+    let keep = |file: &NamedFile| CompanionFile { file_name: file.name.clone(), bytes: file.bytes.clone() };
+    companions.iter().map(keep).collect()
 }
 
 /// Looks a companion up by its key.

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use crate::scene::{MeshAsset, PhotoAsset};
 
 pub use camera_json::CameraFile;
-pub use companions::{FileWithCompanions, with_companions};
+pub use companions::{FileWithCompanions, kept, with_companions};
 pub use document::{DOCUMENT_SCHEMA, Document, Keep, ViewSettings, read_document, write_document};
 pub use error::FormatError;
 pub use incoming::{Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, PosesAs};
@@ -98,6 +98,7 @@ pub fn read_mesh_with(
         file_name: file.name.clone(),
         sha256: crate::scene::Sha256::of(&file.bytes),
         bytes: file.bytes.clone(),
+        companions: companions::kept(companions),
         mesh: loaded.mesh,
         bvh,
     };

@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn colors_multiply_as_light_does() {
         assert_eq!(product([[255; 4], [1, 2, 3, 4]]), [1, 2, 3, 4]);
-        // Half the light is sRGB 188, a quarter is 137.
-        assert_eq!(product([[188, 255, 0, 255], [188, 188, 7, 255]]), [137, 188, 0, 255]);
+        // Half the light is sRGB 188, a quarter is 138.
+        assert_eq!(product([[188, 255, 0, 255], [188, 188, 7, 255]]), [138, 188, 0, 255]);
     }
 }

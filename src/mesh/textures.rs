@@ -74,10 +74,9 @@ impl<'a> Textures<'a> {
     pub fn finish(mut self) -> (Vec<Arc<Pixels>>, Vec<String>) {
         if !self.missing.is_empty() {
             let (count, names) = (self.missing.len(), self.missing.join(", "));
-            let (files, them) = if count == 1 { ("file", "it") } else { ("files", "them") };
+            let (files, are) = if count == 1 { ("file", "is") } else { ("files", "are") };
             self.warnings.push(format!(
-                "The texture {files} {names} did not come with the mesh, which is drawn in a plain colour there; load {them} \
-                 together."
+                "The texture {files} {names} did not come with the mesh and {are} left out; load them together."
             ));
         }
         (self.textures, self.warnings)

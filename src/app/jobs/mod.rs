@@ -8,7 +8,7 @@ mod wire;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::formats::{NamedFile, read_mesh_with, read_photo};
+use crate::formats::{NamedFile, kept, read_mesh_with, read_photo};
 use crate::mesh::{Bvh, Material, Mesh, MeshData, Paint};
 use crate::photo::Pixels;
 use crate::platform::Background;
@@ -35,7 +35,7 @@ pub enum Done {
 pub struct Jobs {
     background: Background,
     next_id: u64,
-    files: HashMap<u64, (JobKind, NamedFile)>,
+    files: HashMap<u64, (JobKind, NamedFile, Vec<NamedFile>)>,
 }
 
 impl Jobs {
@@ -52,7 +52,7 @@ impl Jobs {
     pub fn submit(&mut self, kind: JobKind, file: NamedFile, companions: &[NamedFile]) -> u64 {
         self.next_id += 1;
         self.background.submit(self.next_id, write_request(kind, &file, companions));
-        self.files.insert(self.next_id, (kind, file));
+        self.files.insert(self.next_id, (kind, file, companions.to_vec()));
         self.next_id
     }
 
@@ -61,9 +61,9 @@ impl Jobs {
         let replies = self.background.poll().into_iter();
         let known = replies.filter_map(|(id, reply)| Some((id, self.files.remove(&id)?, reply)));
         known
-            .map(|(id, (kind, file), reply)| {
+            .map(|(id, (kind, file, companions), reply)| {
                 let done = match reply {
-                    Ok(bytes) => read_reply(kind, &file, &bytes),
+                    Ok(bytes) => read_reply(kind, &file, &companions, &bytes),
                     Err(crash) => Err(format!("reading it crashed ({crash}); please report this file")),
                 };
                 (id, file, done)
@@ -129,11 +129,16 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
     })
 }
 
-fn read_reply(kind: JobKind, file: &NamedFile, reply: &[u8]) -> Result<Done, String> {
+fn read_reply(
+    kind: JobKind,
+    file: &NamedFile,
+    companions: &[NamedFile],
+    reply: &[u8],
+) -> Result<Done, String> {
     let mut reader = Reader::new(reply);
     let done = match reader.byte() {
         Some(1) if kind == JobKind::Photo => read_photo_reply(file, &mut reader),
-        Some(1) => read_mesh_reply(file, &mut reader),
+        Some(1) => read_mesh_reply(file, companions, &mut reader),
         _ => {
             let message = reader.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned());
             return Err(message.unwrap_or_else(|| "the worker's reply was damaged".to_owned()));
@@ -216,7 +221,7 @@ fn read_paint(reader: &mut Reader<'_>) -> Option<Paint> {
     Some(Paint { corner_uvs, material_of_triangle, materials: materials.collect(), textures })
 }
 
-fn read_mesh_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
+fn read_mesh_reply(file: &NamedFile, companions: &[NamedFile], reader: &mut Reader<'_>) -> Option<Done> {
     let sha256 = read_hash(reader)?;
     let data = MeshData {
         positions_mm: reader.items()?,
@@ -231,6 +236,7 @@ fn read_mesh_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
         file_name: file.name.clone(),
         sha256,
         bytes: file.bytes.clone(),
+        companions: kept(companions),
         mesh: Mesh::new(data).ok()?,
         bvh,
     };
@@ -250,7 +256,7 @@ mod tests {
     }
 
     fn run(kind: JobKind, file: &NamedFile, companions: &[NamedFile]) -> Result<Done, String> {
-        read_reply(kind, file, &run_job(&write_request(kind, file, companions)))
+        read_reply(kind, file, companions, &run_job(&write_request(kind, file, companions)))
     }
 
     #[test]
@@ -264,7 +270,7 @@ mod tests {
         let obj = file("corner.obj", obj);
         let Ok(Done::Mesh(asset, _)) = run(JobKind::Mesh, &obj, &companions) else { panic!("no mesh") };
         let (expected, _) = read_mesh_with(&obj, &companions).unwrap();
-        assert_eq!(asset.mesh, expected.mesh);
+        assert_eq!((&asset.mesh, &asset.companions), (&expected.mesh, &expected.companions));
         assert_eq!(*asset.mesh.paint().unwrap().textures[0], pixels);
         assert_eq!(asset.bvh.to_parts(), expected.bvh.to_parts());
     }
