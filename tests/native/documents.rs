@@ -48,7 +48,8 @@ fn linemod_survives_a_workspace() {
     println!("workspace of ten photos and ten meshes: {} bytes", zip.len());
     let workspace = read_workspace(&zip).unwrap();
     assert_eq!(workspace.files.len(), 20);
-    let batch = crate::support::batch_of(&workspace.files, None);
+    let files: Vec<_> = workspace.files.into_iter().map(|entry| entry.file).collect();
+    let batch = crate::support::batch_of(&files, None);
     let mut opened = Session::default();
     let opening =
         Opening { document: workspace.document, photos: batch.photos, meshes: batch.meshes, restored: true };
