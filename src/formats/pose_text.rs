@@ -15,9 +15,6 @@ pub enum PoseText {
     Json,
 }
 
-/// Three rows of four numbers are R and t side by side if R is as near to a rotation as this, else R followed by t.
-const NEARLY_A_ROTATION: f64 = 0.1;
-
 const EXPECTED: &str = "16 numbers (4×4, row by row), 12 (R and t), 9 (R alone) or 3 (t alone, mm) expected, or JSON with \
      camera_from_object, R and t, or cam_R_m2c and cam_t_m2c";
 
@@ -49,11 +46,12 @@ fn split(numbers: &[f64], present: &Pose) -> Result<(DMat3, DVec3), FormatError>
         [x, y, z] => Ok((present.rotation, DVec3::new(x, y, z))),
         [_, _, _, _, _, _, _, _, _] => Ok((rotation_of_rows(numbers, 3), present.translation_mm)),
         [.., x, y, z] if numbers.len() == 12 => {
-            let side_by_side = rotation_of_rows(numbers, 4);
-            if rotation_defect(&side_by_side) < NEARLY_A_ROTATION {
-                return Ok((side_by_side, DVec3::new(numbers[3], numbers[7], numbers[11])));
+            // R and t side by side, or R followed by t: whichever is nearer to a rotation.
+            let (side_by_side, in_a_row) = (rotation_of_rows(numbers, 4), rotation_of_rows(numbers, 3));
+            if rotation_defect(&in_a_row) < rotation_defect(&side_by_side) {
+                return Ok((in_a_row, DVec3::new(x, y, z)));
             }
-            Ok((rotation_of_rows(numbers, 3), DVec3::new(x, y, z)))
+            Ok((side_by_side, DVec3::new(numbers[3], numbers[7], numbers[11])))
         }
         [.., a, b, c, d] if numbers.len() == 16 => {
             if [a, b, c, d] == [0.0, 0.0, 0.0, 1.0] {
