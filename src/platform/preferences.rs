@@ -19,8 +19,7 @@ pub fn keep_preferences_in_memory() {
 
 /// What was last written under this key.
 pub fn read_preference(key: &str) -> Option<String> {
-    let from_memory =
-        IN_MEMORY.with_borrow(|memory| memory.as_ref().map(|memory| memory.get(key).cloned()));
+    let from_memory = IN_MEMORY.with_borrow(|memory| memory.as_ref().map(|memory| memory.get(key).cloned()));
     from_memory.unwrap_or_else(|| read_stored_preference(key))
 }
 

@@ -161,6 +161,11 @@ pub trait Storage {
 
     fn usage(&self) -> StorageFuture<StorageUse>;
 
+    /// Asks that what is stored be kept when room gets scarce; worth asking once there is something.
+    fn ask_to_persist(&self) -> StorageFuture<()> {
+        Box::pin(async { Ok(()) })
+    }
+
     /// At once, while the page goes. Nobody is left who could be told of an error.
     fn write_journal(&self, id: &SceneId, journal: &Journal);
 

@@ -15,6 +15,10 @@ impl Session {
             Command::Open(opening) => Ok(self.open(*opening, now_ms)),
             Command::Answer(answer) => self.answer(answer, now_ms),
 
+            Command::NameScene(name) => {
+                self.name_scene(&name);
+                Ok(Vec::new())
+            }
             Command::ShowPhoto(photo) => self.show_photo(photo),
             Command::Select(object) => self.select(object),
             Command::SetTool(tool) => {
@@ -65,7 +69,7 @@ impl Session {
             }
             Command::BeginGesture(label) => {
                 self.finish_gesture();
-                self.gesture = Some(Gesture { label, before: self.snapshot() });
+                self.gesture = Some(Gesture { label, before: self.snapshot(), revision: self.revision });
                 Ok(Vec::new())
             }
             Command::Drag { photo, object, camera_from_object } => {
@@ -83,6 +87,16 @@ impl Session {
                 }
                 Ok(Vec::new())
             }
+        }
+    }
+
+    /// Names the scene in all of its history: what it is called is no step of the work.
+    fn name_scene(&mut self, name: &str) {
+        self.finish_gesture();
+        if self.scene.name != name {
+            name.clone_into(&mut self.scene.name);
+            self.history.name_scenes(name);
+            self.touched();
         }
     }
 

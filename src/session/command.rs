@@ -20,6 +20,8 @@ pub enum Command {
     Open(Box<Opening>),
     Answer(Answer),
 
+    /// What the scene is called; no undo step.
+    NameScene(String),
     ShowPhoto(PhotoId),
     Select(Option<ObjectId>),
     SetTool(Tool),

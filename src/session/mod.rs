@@ -62,6 +62,8 @@ pub enum Tool {
 struct Gesture {
     label: &'static str,
     before: Snapshot,
+    /// The revision of `before`.
+    revision: u64,
 }
 
 #[derive(Debug)]
@@ -127,14 +129,32 @@ impl Session {
         self.revision
     }
 
-    /// The session as our own document.
-    pub fn document(&self, keep: Keep) -> Document {
-        let view = ViewSettings {
+    /// The scene as it was before the gesture under way: what is worth keeping if that gesture is never ended.
+    pub fn settled_scene(&self) -> &Scene {
+        self.gesture.as_ref().map_or(&self.scene, |gesture| &gesture.before.scene)
+    }
+
+    /// The revision of [`Self::settled_scene`].
+    pub fn settled_revision(&self) -> u64 {
+        self.gesture.as_ref().map_or(self.revision, |gesture| gesture.revision)
+    }
+
+    pub fn settled_document(&self, keep: Keep) -> Document {
+        Document::from_scene(self.settled_scene(), &self.view_settings(), keep)
+    }
+
+    /// What is on screen, for a document.
+    pub fn view_settings(&self) -> ViewSettings {
+        ViewSettings {
             photo: self.photo.map(|id| id.0),
             selected: self.selected.map(|id| id.0),
             overlay_opacity: self.look.overlay_opacity,
             outline: self.look.outline,
-        };
-        Document::from_scene(&self.scene, &view, keep)
+        }
+    }
+
+    /// The session as our own document.
+    pub fn document(&self, keep: Keep) -> Document {
+        Document::from_scene(&self.scene, &self.view_settings(), keep)
     }
 }
