@@ -283,3 +283,6 @@ pub fn heading(scene: &Scene, changed_at_ms: f64) -> SceneHeading {
         object_count: scene.objects.len() as u32,
     }
 }
+
+#[cfg(test)]
+mod tests;

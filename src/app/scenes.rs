@@ -165,6 +165,11 @@ impl PinPose {
         }
     }
 
+    /// The scenes that are stored, the one that was changed last first.
+    pub fn scene_list(&self) -> &[SceneSummary] {
+        self.scenes.list()
+    }
+
     /// Opens a scene in place of this one, as a fresh session.
     pub fn open_scene(&mut self, id: SceneId) {
         if id != self.autosave.id() {

@@ -12,8 +12,10 @@ mod layers;
 mod linemod;
 mod mesh_corpus;
 mod panels;
+mod scenes;
 mod scripts;
 mod shaders;
+mod storage;
 mod support;
 
 use support::data_folder;
