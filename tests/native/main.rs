@@ -13,6 +13,7 @@ mod linemod;
 mod mesh_corpus;
 mod panels;
 mod scenes;
+mod scenes_dialog;
 mod scripts;
 mod shaders;
 mod storage;
