@@ -81,11 +81,14 @@ pub fn draw(ctx: &Context, around: &Surroundings<'_>, state: &mut State, request
             Page::List => list(ui, around, state, requests),
             Page::Closed => {}
         });
-    if modal.should_close() {
-        // Esc goes back one step.
-        if state.renaming.take().is_none() && !std::mem::take(&mut state.is_deleting) {
-            state.close();
-        }
+    if !modal.should_close() {
+        return;
+    }
+    if has_step_back {
+        state.renaming = None;
+        state.is_deleting = false;
+    } else {
+        state.close();
     }
 }
 
@@ -158,10 +161,17 @@ fn search_field(ui: &mut Ui, scene_count: usize, state: &mut State) {
         state.search.clear();
         return;
     }
-    let field = TextEdit::singleline(&mut state.search).hint_text("Search").desired_width(f32::INFINITY);
+    let field = TextEdit::singleline(&mut state.search)
+        .id(search_id())
+        .hint_text("Search")
+        .desired_width(f32::INFINITY);
     let response = ui.add(field);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search scenes"));
     ui.add_space(4.0);
+}
+
+fn search_id() -> Id {
+    Id::unique("search scenes")
 }
 
 fn matching<'a>(scenes: &'a [SceneSummary], search: &str) -> Vec<&'a SceneSummary> {
@@ -209,7 +219,8 @@ fn draw_row(
             focus_all(ui, &field, name);
         }
         if field.lost_focus() {
-            let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
+            // Taken, or it would open the scene too.
+            let is_entered = ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Enter));
             let name = state.renaming.take().unwrap_or_default();
             if is_entered && !name.trim().is_empty() {
                 requests.push(SceneRequest::Rename(scene.id.clone(), name.trim().to_owned()));
@@ -232,8 +243,10 @@ fn draw_row(
 
 /// Arrows choose, Enter opens, F2 renames, Delete asks; true if the dialog is done.
 fn keys(ui: &Ui, shown: &[&SceneSummary], state: &mut State, requests: &mut Vec<SceneRequest>) -> bool {
-    // A focused button or field has the keys for itself.
-    if state.renaming.is_some() || ui.memory(|memory| memory.focused().is_some()) {
+    // A focused button or field has the keys for itself; while one searches, one can choose.
+    let focused = ui.memory(egui::Memory::focused);
+    let is_searching = focused == Some(search_id());
+    if state.renaming.is_some() || (focused.is_some() && !is_searching) {
         return false;
     }
     let none = egui::Modifiers::NONE;
@@ -248,10 +261,10 @@ fn keys(ui: &Ui, shown: &[&SceneSummary], state: &mut State, requests: &mut Vec<
     let Some(selected) = shown.iter().find(|scene| state.selected.as_ref() == Some(&scene.id)) else {
         return false;
     };
-    if pressed(Key::F2) {
+    if !is_searching && pressed(Key::F2) {
         begin_renaming(state, selected);
     }
-    if pressed(Key::Delete) {
+    if !is_searching && pressed(Key::Delete) {
         state.is_deleting = true;
     }
     if pressed(Key::Enter) && !state.is_deleting {

@@ -133,6 +133,10 @@ fn a_scene_is_renamed_in_place() {
     harness.key_press(Key::Escape);
     harness.run();
     assert_eq!(taken(&requests), []);
+    harness.get_by_label("Scenes");
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert!(harness.query_by_label("Scenes").is_none());
 }
 
 #[test]
@@ -157,6 +161,8 @@ fn deleting_asks_first() {
 fn many_scenes_can_be_searched() {
     let scenes = (0..12).map(|number| scene(&number.to_string(), &format!("Bench {number}"), 1.0)).collect();
     let (mut harness, requests) = listed(scenes);
+    harness.get_by_label("Search scenes").click();
+    harness.run();
     harness.get_by_label("Search scenes").type_text("bench 11");
     harness.run();
     assert!(harness.query_by_label_contains("Bench 10").is_none());
