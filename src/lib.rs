@@ -10,7 +10,7 @@
 //! | 8 | [`ui`] | panels, viewport, dialogs, theme |
 //! | 7 | [`render`], [`interact`] | wgpu passes (knows no UI); gestures to commands (knows no egui) |
 //! | 6 | [`session`] | a scene being worked on: commands, undo, imports |
-//! | 5 | [`formats`] | files to data and back |
+//! | 5 | [`formats`], [`metrics`] | files to data and back; how far a pose is from another |
 //! | 4 | [`scene`], [`raster`] | plain data; the CPU rasteriser, the renderer's reference |
 //! | 3 | [`mesh`] | meshes, a loader per format, ray casts |
 //! | 2 | [`photo`] | photographs |
@@ -29,6 +29,7 @@ pub mod formats;
 pub mod interact;
 pub mod math;
 pub mod mesh;
+pub mod metrics;
 #[cfg(target_arch = "wasm32")]
 mod page;
 pub mod photo;

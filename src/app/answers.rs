@@ -6,14 +6,14 @@ use glam::DVec2;
 
 use super::PinPose;
 use super::loading::Arrival;
+use super::pictures::PictureFor;
 use super::widgets::WidgetWatcher;
 use crate::formats::{Keep, PosesAs, write_document};
 use crate::interact::pick_all;
 use crate::math::Pose;
-use crate::photo::png_rgba;
 use crate::platform::{self, FileBytes, PageAnswer, PageCall, PageReply, PageState, PageValue, Perf, Picked};
-use crate::render::{ExportKind, Layer, PixelsPending, export_picture, raster_png, silhouette_png};
-use crate::scene::{ObjectId, PhotoId, PoseSource};
+use crate::render::ExportKind;
+use crate::scene::{Look, ObjectId, PhotoId, PoseSource};
 use crate::session::{COMMANDS, Command, Question, Tool};
 use crate::ui::Saving;
 
@@ -23,9 +23,6 @@ type Answer = Result<PageAnswer, String>;
 #[derive(Default)]
 pub struct Answers {
     widgets: Vec<PageReply>,
-    pictures: Vec<(PixelsPending, ExportKind, PageReply)>,
-    /// Waiting for a photo to be decoded.
-    renders: Vec<(PhotoId, ExportKind, Option<ObjectId>, PageReply)>,
 }
 
 impl PinPose {
@@ -48,8 +45,6 @@ impl PinPose {
                 }
             }
         }
-        self.start_renders(ctx);
-        self.finish_pictures(ctx);
     }
 
     fn answer_now(&mut self, call: PageCall, ctx: &egui::Context) -> Answer {
@@ -103,7 +98,7 @@ impl PinPose {
             ("select", Some(PageValue::Number(id))) => Command::Select(Some(ObjectId(whole(id)?))),
             ("select", None) => Command::Select(None),
             ("set_overlay_opacity", Some(PageValue::Number(opacity))) => {
-                Command::SetOverlayOpacity(opacity as f32)
+                Command::SetLook(Look { overlay_opacity: opacity as f32, ..self.session.look() })
             }
             _ => {
                 let info = COMMANDS.iter().find(|info| info.name == name);
@@ -191,7 +186,7 @@ impl PinPose {
 
     fn call_render(&mut self, photo: Option<u32>, kind: &str, object: Option<u32>, reply: PageReply) {
         match self.check_render(photo, kind, object) {
-            Ok((photo, kind, object)) => self.answers.renders.push((photo, kind, object, reply)),
+            Ok((photo, kind, object)) => self.pictures.ask(photo, kind, object, PictureFor::Page(reply)),
             Err(message) => {
                 reply.send(Err(message)).ok();
             }
@@ -220,65 +215,6 @@ impl PinPose {
             self.session.scene().annotation(photo, object).ok_or("that object is not in that photo")?;
         }
         Ok((photo, kind, object))
-    }
-
-    /// Starts what can be started; an overlay waits until its photo is decoded.
-    fn start_renders(&mut self, ctx: &egui::Context) {
-        for (photo, kind, object, reply) in std::mem::take(&mut self.answers.renders) {
-            let scene = self.session.scene();
-            let pixels = scene.photo(photo).and_then(|photo| self.photos.get(photo.asset.sha256));
-            match kind {
-                ExportKind::Mask | ExportKind::VisibleMask | ExportKind::Depth => {
-                    let png = raster_png(scene, photo, kind, object);
-                    reply
-                        .send(
-                            png.map(PageAnswer::Bytes).ok_or_else(|| "the picture cannot be made".to_owned()),
-                        )
-                        .ok();
-                }
-                ExportKind::Overlay if pixels.is_none() => {
-                    if let Some(photo) = scene.photo(photo).map(|photo| photo.asset.clone())
-                        && self.photos.wanted != Some(photo.sha256)
-                    {
-                        self.photos.wanted = Some(photo.sha256);
-                        self.loading.decode(&photo);
-                    }
-                    self.answers.renders.push((photo, kind, object, reply));
-                }
-                ExportKind::Overlay | ExportKind::Silhouette => {
-                    let object = object.filter(|_| kind.is_of_one_object());
-                    let picture = export_picture(scene, photo, pixels, object);
-                    let (Some(picture), Some(renderer)) = (picture, &self.renderer) else {
-                        reply.send(Err("the picture cannot be drawn".to_owned())).ok();
-                        continue;
-                    };
-                    let layer = if kind == ExportKind::Silhouette { Layer::Ids } else { Layer::Picture };
-                    let size = [picture.camera.width, picture.camera.height];
-                    let mut renderer = renderer.lock().unwrap_or_else(PoisonError::into_inner);
-                    let pending = renderer.draw_and_read(&picture, size, layer);
-                    self.answers.pictures.push((pending, kind, reply));
-                    ctx.request_repaint();
-                }
-            }
-        }
-    }
-
-    fn finish_pictures(&mut self, ctx: &egui::Context) {
-        let Some(renderer) = &self.renderer else { return };
-        let gpu = renderer.lock().unwrap_or_else(PoisonError::into_inner).gpu().clone();
-        for (pending, kind, reply) in std::mem::take(&mut self.answers.pictures) {
-            let Some(pixels) = pending.poll(&gpu) else {
-                self.answers.pictures.push((pending, kind, reply));
-                ctx.request_repaint();
-                continue;
-            };
-            let png = pixels.map_err(|error| error.to_string()).and_then(|pixels| {
-                let png =
-                    if kind == ExportKind::Silhouette { silhouette_png(&pixels) } else { png_rgba(&pixels) };
-                png.map(PageAnswer::Bytes).ok_or_else(|| "the picture cannot be written as PNG".to_owned())
-            });
-            reply.send(png).ok();
-        }
     }
 
     fn answer_widgets(&mut self, ctx: &egui::Context) {

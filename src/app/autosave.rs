@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crate::formats::{Document, Keep, ViewSettings, write_document};
 use crate::platform::{self, Journal, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, Storage};
-use crate::scene::{Scene, file_stem};
+use crate::scene::{Scene, SceneFile, file_stem};
 use crate::session::Session;
 use crate::ui::Saving;
 
@@ -254,26 +254,22 @@ impl Seen {
     }
 
     fn saved(&self, changed_at_ms: f64) -> Saved {
-        let asset = |key: String, file_name: &str, bytes: &std::sync::Arc<[u8]>| SavedAsset {
-            key,
-            file_name: file_name.to_owned(),
-            bytes: bytes.clone(),
+        let asset = |file: &SceneFile<'_>| SavedAsset {
+            key: file.sha256.to_string(),
+            file_name: file.name.to_owned(),
+            bytes: file.bytes.clone(),
         };
-        let photos = self.scene.photos.iter().map(|photo| &photo.asset);
-        let meshes = self.scene.objects.iter().map(|object| &object.mesh);
-        let photos = photos.map(|photo| asset(photo.sha256.to_string(), &photo.file_name, &photo.bytes));
-        let meshes = meshes.map(|mesh| asset(mesh.sha256.to_string(), &mesh.file_name, &mesh.bytes));
         Saved {
             heading: heading(&self.scene, changed_at_ms),
             json: write_document(&self.document()),
-            assets: photos.chain(meshes).collect(),
+            assets: self.scene.files().iter().map(asset).collect(),
         }
     }
 }
 
 /// What a list of scenes says of this one.
 pub fn heading(scene: &Scene, changed_at_ms: f64) -> SceneHeading {
-    let photo = scene.photos.first().map(|photo| file_stem(&photo.asset.file_name));
+    let photo = scene.photos.first().map(|photo| file_stem(&photo.name));
     let object = scene.objects.first().map(|object| object.name.as_str());
     SceneHeading {
         name: scene.name.clone(),

@@ -19,7 +19,7 @@ impl PinPose {
     pub(super) fn take_keys(&mut self, ctx: &egui::Context) {
         let state = &self.ui_state;
         let dialog_is_open =
-            self.session.question().is_some() || state.shortcuts_open || state.scenes_dialog.is_open();
+            self.session.question().is_some() || state.open.is_some() || state.scenes_dialog.is_open();
         if dialog_is_open || ctx.text_edit_focused() || egui::Popup::is_any_open(ctx) {
             return;
         }

@@ -12,6 +12,7 @@ mod jobs;
 mod loading;
 mod performance;
 mod photo_cache;
+mod pictures;
 mod scenes;
 mod widgets;
 
@@ -41,6 +42,8 @@ pub struct PinPose {
     backend: String,
     calls: PageCalls,
     answers: answers::Answers,
+    pictures: pictures::Pictures,
+    ctx: egui::Context,
     performance: performance::Performance,
     events: events::Events,
     /// Read at the start of each frame: where the pointer is over the viewport, in its physical pixels.
@@ -83,6 +86,8 @@ impl PinPose {
             backend,
             calls: start.calls,
             answers: answers::Answers::default(),
+            pictures: pictures::Pictures::default(),
+            ctx: ctx.clone(),
             performance: performance::Performance::default(),
             events: events::Events::default(),
             pointer: None,
@@ -101,10 +106,6 @@ impl PinPose {
     fn try_apply(&mut self, command: Command) -> Result<(), String> {
         if matches!(command, Command::CancelGesture | Command::Run(crate::session::CommandId::Cancel)) {
             self.gestures.cancel();
-        }
-        if matches!(command, Command::Run(crate::session::CommandId::NewScene)) {
-            self.new_scene();
-            return Ok(());
         }
         let effects = self.session.apply(command, platform::now_ms()).map_err(|error| error.to_string())?;
         effects.into_iter().for_each(|effect| self.carry_out(effect));
@@ -127,6 +128,7 @@ impl eframe::App for PinPose {
         self.take_keys(ctx);
         self.take_gestures(ctx);
         self.want_pixels();
+        self.make_pictures(ctx);
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }

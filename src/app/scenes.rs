@@ -189,7 +189,7 @@ impl PinPose {
             return;
         }
         if self.session.scene().name.is_empty() {
-            self.apply(Command::NameScene(name.to_owned()));
+            self.apply(Command::RenameScene(name.to_owned()));
             self.save_now();
         } else {
             self.after_saving(Next::SaveAs(name.to_owned()));
@@ -202,7 +202,7 @@ impl PinPose {
             return;
         }
         if *id == self.autosave.id() {
-            self.apply(Command::NameScene(name.to_owned()));
+            self.apply(Command::RenameScene(name.to_owned()));
             self.autosave.save_now(&self.session, platform::now_ms());
         } else {
             let renaming = self.scenes.storage.rename(id, name);
@@ -342,7 +342,7 @@ impl PinPose {
     }
 
     fn begin_copy(&mut self, name: String) {
-        self.apply(Command::NameScene(name));
+        self.apply(Command::RenameScene(name));
         self.scenes.is_trial = false;
         self.autosave.begin(platform::new_scene_id(), None, &self.session);
         self.autosave.mark_unsaved();

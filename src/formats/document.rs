@@ -2,12 +2,14 @@
 //! change without the files changing; `document.schema.json` describes it for others.
 
 mod convert;
+mod view;
 
 use serde::{Deserialize, Serialize};
 
 use super::FormatError;
 
 pub use convert::Keep;
+pub use view::ViewSettings;
 
 /// The JSON Schema of what [`write_document`] writes.
 pub const DOCUMENT_SCHEMA: &str = include_str!("document.schema.json");
@@ -43,6 +45,9 @@ struct Conventions {
 #[serde(deny_unknown_fields)]
 struct PhotoEntry {
     id: u32,
+    /// What the user calls it; absent where that is the file's name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
     file: String,
     sha256: String,
     width: u32,
@@ -52,7 +57,43 @@ struct PhotoEntry {
     /// k1 k2 p1 p2 k3, or null.
     distortion: Option<[f64; 5]>,
     camera_origin: CameraOriginEntry,
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    visible: bool,
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    opacity: f32,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    locked: bool,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    masks: Vec<MaskEntry>,
     poses: Vec<PoseEntry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaskEntry {
+    name: String,
+    file: String,
+    sha256: String,
+    object: Option<u32>,
+    color: String,
+    opacity: f32,
+    visible: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(value: &bool) -> bool {
+    *value
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+fn is_one(value: &f32) -> bool {
+    *value == 1.0
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -116,6 +157,9 @@ struct ObjectEntry {
     opacity: f32,
     visible: bool,
     locked: bool,
+    /// Objects of one group move together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    link: Option<u32>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -132,24 +176,6 @@ struct ReferencePoseEntry {
     photo: u32,
     object: u32,
     camera_from_object: [[f64; 4]; 4],
-}
-
-/// What was on screen; never part of undo.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ViewSettings {
-    /// Ids of [`Document`]'s photos and objects.
-    pub photo: Option<u32>,
-    pub selected: Option<u32>,
-    /// 0 to 1, over all objects.
-    pub overlay_opacity: f32,
-    pub outline: bool,
-}
-
-impl Default for ViewSettings {
-    fn default() -> Self {
-        Self { photo: None, selected: None, overlay_opacity: 1.0, outline: true }
-    }
 }
 
 /// The document as text, numbers with as many digits as bring them back bit for bit.

@@ -32,6 +32,8 @@ pub struct Incoming {
 pub struct IncomingPhoto {
     pub key: FileKey,
     pub camera: Option<IncomingCamera>,
+    /// `None`: as the scene has it.
+    pub look: Option<PhotoLook>,
     pub poses: Vec<IncomingPose>,
 }
 
@@ -48,16 +50,27 @@ pub struct IncomingObject {
     pub key: FileKey,
     /// `None`: as the scene has it.
     pub mesh_from_file: Option<DMat4>,
-    pub look: Option<Look>,
+    pub look: Option<ObjectLook>,
 }
 
 /// How an object was shown.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Look {
+pub struct ObjectLook {
     pub name: String,
     pub color: Rgb,
     pub opacity: f32,
     pub visible: bool,
+    pub locked: bool,
+    pub link: Option<u32>,
+}
+
+/// How a photo was shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhotoLook {
+    /// `None`: its file's.
+    pub name: Option<String>,
+    pub visible: bool,
+    pub opacity: f32,
     pub locked: bool,
 }
 

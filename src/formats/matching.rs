@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::incoming::PhotoLook;
 use super::{Incoming, IncomingCamera, IncomingObject, PosesAs};
 use crate::math::Pose;
 use crate::scene::{
@@ -88,7 +89,7 @@ impl Incoming {
             (object.look, object.mesh_from_file) = (None, None);
         }
         for (photo, _) in rest.photos.iter_mut().zip(photos).filter(|(_, id)| id.is_some()) {
-            photo.camera = None;
+            (photo.camera, photo.look) = (None, None);
             // A reference is read-only: giving it again, more complete, takes nothing from anybody.
             if poses_as == PosesAs::Annotations {
                 photo.poses.retain(|pose| objects.get(pose.object).is_none_or(Option::is_none));
@@ -111,6 +112,9 @@ impl Incoming {
             }
         }
         for (photo, id) in self.photos.iter().zip(photos) {
+            if let (Some(look), Some(known)) = (&photo.look, id.and_then(|id| scene.photo_mut(id))) {
+                restore_photo_look(known, look);
+            }
             for pose in &photo.poses {
                 let (Some(photo), Some(&Some(object))) = (*id, objects.get(pose.object)) else { continue };
                 let annotation = Annotation {
@@ -162,8 +166,11 @@ impl Incoming {
             let id = match free {
                 Some(object) => object.id,
                 None => {
-                    let mesh = scene.objects.iter().find(|object| matches(&object.mesh))?.mesh.clone();
-                    scene.add_object(mesh)
+                    let known = scene.objects.iter().find(|object| matches(&object.mesh))?;
+                    let (mesh, mesh_from_file) = (known.mesh.clone(), known.mesh_from_file);
+                    let id = scene.add_object(mesh);
+                    scene.object_mut(id)?.mesh_from_file = mesh_from_file;
+                    id
                 }
             };
             taken.push(id);
@@ -204,6 +211,15 @@ fn give_camera(scene: &mut Scene, id: PhotoId, camera: &IncomingCamera, outcome:
     }
 }
 
+fn restore_photo_look(photo: &mut Photo, look: &PhotoLook) {
+    if let Some(name) = &look.name {
+        photo.name.clone_from(name);
+    }
+    photo.visible = look.visible;
+    photo.opacity = look.opacity;
+    photo.locked = look.locked;
+}
+
 /// Gives an object its saved look; what cannot be done is said.
 fn restore_look(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> Option<String> {
     let object = scene.object_mut(id)?;
@@ -213,6 +229,7 @@ fn restore_look(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> O
         object.opacity = look.opacity;
         object.visible = look.visible;
         object.locked = look.locked;
+        object.link = look.link;
     }
     let wanted = incoming.mesh_from_file.filter(|wanted| *wanted != object.mesh_from_file)?;
     match object.mesh.with_mesh_from_file(object.mesh_from_file, wanted) {

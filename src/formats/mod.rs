@@ -8,6 +8,7 @@ mod error;
 mod incoming;
 mod kind;
 mod matching;
+mod pose_text;
 mod vision6d;
 mod workspace;
 
@@ -21,6 +22,7 @@ pub use error::FormatError;
 pub use incoming::{Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, PosesAs};
 pub use kind::{FileKind, classify};
 pub use matching::{FileKey, Outcome};
+pub use pose_text::{PoseText, read_pose_text, write_pose_text};
 pub use workspace::{Workspace, read_workspace, write_workspace};
 
 /// A file as it came from a drop, a picker, an archive or the command line.

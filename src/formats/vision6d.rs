@@ -88,6 +88,7 @@ fn finish(
         None => incoming.photos.push(IncomingPhoto {
             key,
             camera: Some(IncomingCamera::File(camera.clone())),
+            look: None,
             poses: vec![pose],
         }),
     }

@@ -7,7 +7,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::{Document, FormatError, NamedFile, read_document, write_document};
-use crate::scene::{Scene, Sha256};
+use crate::scene::Scene;
 
 /// Where the document is in the archive.
 const DOCUMENT_NAME: &str = "scene.json";
@@ -33,25 +33,13 @@ pub fn write_workspace(document: &Document, scene: &Scene) -> Result<Vec<u8>, Fo
 
     writer.start_file(DOCUMENT_NAME, packed).map_err(archive)?;
     writer.write_all(write_document(document).as_bytes()).map_err(io)?;
-    let photos = scene.photos.iter().map(|photo| {
-        let asset = &photo.asset;
-        ("photos", &asset.file_name, asset.sha256, &asset.bytes, stored)
-    });
-    let meshes = scene.objects.iter().map(|object| {
-        let asset = &object.mesh;
-        ("meshes", &asset.file_name, asset.sha256, &asset.bytes, packed)
-    });
-    let mut written: Vec<Sha256> = Vec::new();
-    for (folder, name, sha256, bytes, options) in photos.chain(meshes) {
-        if written.contains(&sha256) {
-            continue;
-        }
-        written.push(sha256);
+    for file in scene.files() {
+        let (folder, options) = if file.is_image { ("photos", stored) } else { ("meshes", packed) };
         // The hash keeps two files of one name apart; the document finds both by it.
-        let prefix: String = sha256.to_string().chars().take(8).collect();
-        let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
+        let prefix: String = file.sha256.to_string().chars().take(8).collect();
+        let base = file.name.rsplit(['/', '\\']).next().unwrap_or(file.name);
         writer.start_file(format!("{folder}/{prefix}/{base}"), options).map_err(archive)?;
-        writer.write_all(bytes).map_err(io)?;
+        writer.write_all(file.bytes).map_err(io)?;
     }
     Ok(writer.finish().map_err(archive)?.into_inner())
 }

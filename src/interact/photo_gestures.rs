@@ -3,10 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use super::drag::{self, Grab};
-use super::{Hit, PhotoView, pick_all, with_depth_changed};
+use super::{Hit, PhotoView, pick_all};
 use crate::math::{Intrinsics, Pose};
 use crate::scene::{AnnotationState, ObjectId, PhotoId};
-use crate::session::{Command, Session, Tool};
+use crate::session::{Command, Session, Tool, with_depth_changed};
 
 /// A press that moves less than this is a click.
 const CLICK_RADIUS_PX: f64 = 4.0;
@@ -334,7 +334,7 @@ fn depth_by_wheel(
     let pose = scene.annotation(photo, object)?.camera_from_object;
     let camera = scene.photo(photo)?.camera;
     let pose = with_depth_changed(&pose, &camera, &scene.object(object)?.mesh.mesh, anchor, silhouette_px);
-    Some(Command::Nudge { photo, object, camera_from_object: pose, label: "Change depth" })
+    Some(Command::Step { photo, object, camera_from_object: pose, label: "Change depth" })
 }
 
 fn depth_target(session: &Session, pixel: DVec2) -> Option<(PhotoId, ObjectId, DVec3)> {

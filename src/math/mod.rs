@@ -8,9 +8,14 @@ mod camera;
 mod frames;
 mod pose;
 mod ray;
+mod rotation;
 
 pub use bounds::{BoundingSphere, Bounds};
 pub use camera::{CameraError, Distortion, Intrinsics};
 pub use frames::{ImageRect, NEAR_MM, clip_from_camera};
 pub use pose::{Pose, PoseError, nearest_rotation, rotation_defect};
 pub use ray::Ray;
+pub use rotation::{
+    fixed_xyz_from_rotation, quaternion_from_rotation, rotation_from_fixed_xyz, rotation_from_quaternion,
+    rotation_from_rotation_vector, rotation_vector_from_rotation,
+};

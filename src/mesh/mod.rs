@@ -274,3 +274,7 @@ mod tests {
         assert_eq!(mirrored.bounds().min, DVec3::new(-2.0, 0.0, 0.0));
     }
 }
+
+pub fn write_ply(_: &Mesh) -> Vec<u8> {
+    Vec::new()
+}

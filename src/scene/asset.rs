@@ -89,6 +89,14 @@ pub struct MeshAsset {
 }
 
 impl MeshAsset {
+    /// What mesh and search tree take in memory, roughly: positions, triangles, attributes and two tree nodes a triangle.
+    pub fn memory_bytes(&self) -> usize {
+        const BYTES_PER_VERTEX: usize = 12 + 12 + 4;
+        const BYTES_PER_TRIANGLE: usize = 12 + 2 * 32;
+        let (vertices, triangles) = (self.mesh.positions_mm().len(), self.mesh.triangles().len());
+        vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE
+    }
+
     /// The same file under another transform from its numbers to the `object` frame.
     pub fn with_mesh_from_file(&self, present: DMat4, wanted: DMat4) -> Result<Self, MeshError> {
         let mesh = self.mesh.transformed(&DAffine3::from_mat4(wanted * present.inverse()))?;

@@ -21,6 +21,18 @@ pub fn object_color(index: usize) -> Rgb {
     OBJECT_COLORS[index % OBJECT_COLORS.len()]
 }
 
+/// The first colour that the fewest objects have: neighbours differ, also after some were removed.
+pub fn free_object_color(used: impl Iterator<Item = Rgb>) -> Rgb {
+    let used: Vec<Rgb> = used.collect();
+    let times = |color: &Rgb| used.iter().filter(|other| *other == color).count();
+    OBJECT_COLORS.into_iter().min_by_key(times).unwrap_or(OBJECT_COLORS[0])
+}
+
+/// Of a mask that belongs to no object.
+pub fn mask_color() -> Rgb {
+    Rgb([255, 255, 255])
+}
+
 /// References are magenta, as in the paper.
 pub fn reference_color() -> Rgb {
     Rgb([255, 64, 220])

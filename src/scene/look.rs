@@ -98,6 +98,24 @@ pub struct Look {
     pub difference: bool,
 }
 
+impl Look {
+    /// The same with every number within its range, for numbers that come from outside.
+    pub fn in_range(self) -> Self {
+        let signed = |value: f32| if value.is_finite() { value.clamp(-1.0, 1.0) } else { 0.0 };
+        let unit = |value: f32| if value.is_finite() { value.clamp(0.0, 1.0) } else { 1.0 };
+        Self {
+            overlay_opacity: unit(self.overlay_opacity),
+            photo: PhotoAdjustment {
+                brightness: signed(self.photo.brightness),
+                contrast: signed(self.photo.contrast),
+                saturation: signed(self.photo.saturation),
+            },
+            wipe: self.wipe.map(unit),
+            ..self
+        }
+    }
+}
+
 impl Default for Look {
     fn default() -> Self {
         Self {

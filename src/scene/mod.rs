@@ -6,9 +6,11 @@ mod annotation;
 mod asset;
 mod color;
 mod look;
+mod mask;
+mod mesh_frame;
 mod placement;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DMat4;
@@ -17,8 +19,10 @@ use crate::math::{Intrinsics, Pose};
 
 pub use annotation::{Annotation, AnnotationState, PoseSource};
 pub use asset::{MeshAsset, PhotoAsset, Sha256};
-pub use color::{Rgb, object_color, reference_color};
+pub use color::{Rgb, free_object_color, mask_color, object_color, reference_color};
 pub use look::{Layers, Look, OverlayMode, PhotoAdjustment};
+pub use mask::{Mask, MaskId};
+pub use mesh_frame::{MeshFrame, MeshFrameError};
 pub use placement::untouched_pose;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,9 +35,18 @@ pub struct ObjectId(pub u32);
 #[derive(Debug, Clone, PartialEq)]
 pub struct Photo {
     pub id: PhotoId,
+    pub name: String,
     pub asset: Arc<PhotoAsset>,
     pub camera: Intrinsics,
     pub camera_origin: CameraOrigin,
+    /// The last camera that was not typed: what a reset goes back to.
+    pub given_camera: (Intrinsics, CameraOrigin),
+    /// Its pixels are shown; the meshes over it have their own.
+    pub visible: bool,
+    /// 0 to 1, over the background.
+    pub opacity: f32,
+    /// Camera and poses stay as they are.
+    pub locked: bool,
 }
 
 /// Where a photo's intrinsics came from; a guess is always shown as one.
@@ -67,6 +80,8 @@ pub struct Object {
     pub opacity: f32,
     pub visible: bool,
     pub locked: bool,
+    /// Objects of one group move together.
+    pub link: Option<u32>,
 }
 
 /// A named, read-only set of poses beside the annotations.
@@ -85,7 +100,17 @@ pub struct Scene {
     /// An object is in a photo if it has an annotation there.
     pub annotations: BTreeMap<(PhotoId, ObjectId), Annotation>,
     pub references: Vec<Reference>,
+    pub masks: Vec<Mask>,
     next_id: u32,
+}
+
+/// A file that a scene needs.
+#[derive(Debug, Clone, Copy)]
+pub struct SceneFile<'a> {
+    pub name: &'a str,
+    pub sha256: Sha256,
+    pub bytes: &'a Arc<[u8]>,
+    pub is_image: bool,
 }
 
 impl Scene {
@@ -129,33 +154,125 @@ impl Scene {
         }
         let id = PhotoId(self.take_id());
         let (camera, camera_origin) = asset.guessed_camera();
-        self.photos.push(Photo { id, asset, camera, camera_origin });
+        self.photos.push(Photo {
+            id,
+            name: asset.file_name.clone(),
+            asset,
+            camera,
+            given_camera: (camera, camera_origin.clone()),
+            camera_origin,
+            visible: true,
+            opacity: 1.0,
+            locked: false,
+        });
         id
     }
 
     /// Adds an object that is in no photo yet.
     pub fn add_object(&mut self, mesh: Arc<MeshAsset>) -> ObjectId {
         let id = ObjectId(self.take_id());
+        let used = self.objects.iter().map(|object| object.color);
         self.objects.push(Object {
             id,
-            name: file_stem(&mesh.file_name).to_owned(),
-            color: object_color(self.objects.len()),
+            name: self.free_object_name(file_stem(&mesh.file_name)),
+            color: free_object_color(used),
             mesh,
             mesh_from_file: DMat4::IDENTITY,
             opacity: 0.7,
             visible: true,
             locked: false,
+            link: None,
         });
         id
     }
 
+    /// Another object of the same mesh, in the same places as the first, beside it in the list.
+    pub fn duplicate_object(&mut self, id: ObjectId) -> Option<ObjectId> {
+        let position = self.objects.iter().position(|object| object.id == id)?;
+        let original = self.objects[position].clone();
+        let copy = ObjectId(self.take_id());
+        let name = self.free_object_name(&original.name);
+        let color = free_object_color(self.objects.iter().map(|object| object.color));
+        self.objects
+            .insert(position + 1, Object { id: copy, name, color, link: None, locked: false, ..original });
+        Some(copy)
+    }
+
+    pub fn add_mask(&mut self, photo: PhotoId, object: Option<ObjectId>, asset: Arc<PhotoAsset>) -> MaskId {
+        let id = MaskId(self.take_id());
+        let color = object.and_then(|object| self.object(object)).map_or(mask_color(), |object| object.color);
+        let name = asset.file_name.clone();
+        self.masks.push(Mask { id, photo, object, name, asset, color, opacity: 0.4, visible: true });
+        id
+    }
+
+    pub fn mask(&self, id: MaskId) -> Option<&Mask> {
+        self.masks.iter().find(|mask| mask.id == id)
+    }
+
+    pub fn masks_of(&self, photo: PhotoId) -> impl Iterator<Item = &Mask> {
+        self.masks.iter().filter(move |mask| mask.photo == photo)
+    }
+
+    /// Every file that the scene needs, each content once.
+    pub fn files(&self) -> Vec<SceneFile<'_>> {
+        let photos = self.photos.iter().map(|photo| &photo.asset);
+        let images = photos.chain(self.masks.iter().map(|mask| &mask.asset)).map(|asset| SceneFile {
+            name: &asset.file_name,
+            sha256: asset.sha256,
+            bytes: &asset.bytes,
+            is_image: true,
+        });
+        let meshes = self.objects.iter().map(|object| SceneFile {
+            name: &object.mesh.file_name,
+            sha256: object.mesh.sha256,
+            bytes: &object.mesh.bytes,
+            is_image: false,
+        });
+        let mut seen = BTreeSet::new();
+        images.chain(meshes).filter(|file| seen.insert(file.sha256)).collect()
+    }
+
+    /// The objects that move together with one, itself left out.
+    pub fn linked_to(&self, id: ObjectId) -> impl Iterator<Item = ObjectId> {
+        let link = self.object(id).and_then(|object| object.link);
+        let linked = self.objects.iter().filter(move |object| link.is_some() && object.link == link);
+        linked.map(|object| object.id).filter(move |linked| *linked != id)
+    }
+
+    /// Makes objects move together: one group of them and of whatever they were linked to.
+    pub fn link(&mut self, ids: &[ObjectId]) {
+        let groups: Vec<u32> =
+            ids.iter().filter_map(|id| self.object(*id)).filter_map(|object| object.link).collect();
+        let group = self.take_id();
+        for object in &mut self.objects {
+            if ids.contains(&object.id) || object.link.is_some_and(|link| groups.contains(&link)) {
+                object.link = Some(group);
+            }
+        }
+    }
+
+    fn free_object_name(&self, wanted: &str) -> String {
+        let is_free = |name: &str| self.objects.iter().all(|object| object.name != name);
+        if is_free(wanted) {
+            return wanted.to_owned();
+        }
+        let base = wanted.rsplit_once(' ').filter(|(_, number)| number.parse::<u32>().is_ok());
+        let base = base.map_or(wanted, |(base, _)| base);
+        (2..).map(|number| format!("{base} {number}")).find(|name| is_free(name)).unwrap_or_default()
+    }
+
     pub fn remove_photo(&mut self, id: PhotoId) {
         self.photos.retain(|photo| photo.id != id);
+        self.masks.retain(|mask| mask.photo != id);
         self.retain_poses(|(photo, _)| photo != id);
     }
 
     pub fn remove_object(&mut self, id: ObjectId) {
         self.objects.retain(|object| object.id != id);
+        for mask in self.masks.iter_mut().filter(|mask| mask.object == Some(id)) {
+            mask.object = None;
+        }
         self.retain_poses(|(_, object)| object != id);
     }
 
@@ -175,6 +292,9 @@ impl Scene {
         let Some(photo) = self.photo_mut(id) else { return };
         let changed = photo.camera != camera;
         photo.camera = camera;
+        if origin != CameraOrigin::Typed {
+            photo.given_camera = (camera, origin.clone());
+        }
         photo.camera_origin = origin;
         if !changed {
             return;

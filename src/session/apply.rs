@@ -1,10 +1,10 @@
-//! Carrying out commands.
+//! Carrying out commands: which one goes where, and what all changes have in common.
 
-use super::{Burst, Command, CommandError, Effect, Gesture, Session, Snapshot};
-use crate::math::Pose;
-use crate::scene::{Annotation, AnnotationState, ObjectId, PhotoId, PoseSource, Scene};
+use super::{Burst, BurstKey, Command, CommandError, Effect, Session, Snapshot};
+use crate::math::Intrinsics;
+use crate::scene::{CameraOrigin, ObjectId, PhotoId, Scene};
 
-type Applied = Result<Vec<Effect>, CommandError>;
+pub(super) type Applied = Result<Vec<Effect>, CommandError>;
 
 impl Session {
     /// Carries out one command at the time `now_ms` (milliseconds since 1970, UTC). After an error nothing has changed.
@@ -12,43 +12,60 @@ impl Session {
         match command {
             Command::Run(id) => self.run(id, now_ms),
             Command::Import(batch) => Ok(self.import(*batch, now_ms)),
+            Command::ImportMasks(images) => self.import_masks(&images),
             Command::Open(opening) => Ok(self.open(*opening, now_ms)),
             Command::Answer(answer) => self.answer(answer, now_ms),
-
-            Command::NameScene(name) => {
-                self.name_scene(&name);
+            Command::RenameScene(name) => {
+                self.rename_scene(&name);
                 Ok(Vec::new())
             }
+
             Command::ShowPhoto(photo) => self.show_photo(photo),
             Command::Select(object) => self.select(object),
+            Command::SelectAlso(object) => self.select_also(object),
             Command::SetTool(tool) => {
                 self.tool = tool;
                 Ok(Vec::new())
             }
-            Command::SetOverlayOpacity(opacity) => {
-                self.look.overlay_opacity = opacity.clamp(0.0, 1.0);
+            Command::SetLook(look) => {
+                self.look = look.in_range();
                 self.touched();
                 Ok(Vec::new())
             }
-
-            Command::SetCamera { photo, camera, origin } => {
-                let camera = camera.checked().map_err(|error| CommandError::Failed(error.to_string()))?;
-                self.with_photo(photo, "Set camera", |scene| scene.set_camera(photo, camera, origin))
+            Command::SetPanes(panes) => {
+                self.panes = panes;
+                self.touched();
+                Ok(Vec::new())
             }
+            Command::SetNudge(settings) => {
+                self.nudge = settings;
+                Ok(Vec::new())
+            }
+
+            Command::SetCamera { photo, camera, origin } => self.set_camera(photo, camera, origin, now_ms),
+            Command::ResetCamera(photo) => self.reset_camera(photo, now_ms),
+            Command::EditPhoto(photo, change) => self.edit_photo(photo, change, now_ms),
+            Command::EditObject(object, change) => self.edit_object(object, change, now_ms),
+            Command::EditMask(mask, change) => self.edit_mask(mask, change, now_ms),
             Command::RemovePhoto(photo) => {
                 self.with_photo(photo, "Remove photo", |scene| scene.remove_photo(photo))
             }
             Command::RemoveObject(object) => {
                 self.with_object(object, "Remove object", |scene| scene.remove_object(object))
             }
-            Command::SetObjectVisible(object, visible) => {
-                let label = if visible { "Show object" } else { "Hide object" };
-                self.edit_object(object, label, |object| object.visible = visible)
+            Command::RemoveMask(mask) => {
+                self.scene.mask(mask).ok_or(CommandError::NoMask(mask))?;
+                self.change("Remove mask", |scene| scene.masks.retain(|candidate| candidate.id != mask))
             }
-            Command::SetObjectLocked(object, locked) => {
-                let label = if locked { "Lock object" } else { "Unlock object" };
-                self.edit_object(object, label, |object| object.locked = locked)
-            }
+            Command::MovePhoto(photo, to) => self.with_photo(photo, "Reorder photos", |scene| {
+                move_before(&mut scene.photos, |candidate| candidate.id == photo, to);
+            }),
+            Command::MoveObject(object, to) => self.with_object(object, "Reorder objects", |scene| {
+                move_before(&mut scene.objects, |candidate| candidate.id == object, to);
+            }),
+            Command::MoveMask(mask, to) => self.change("Reorder masks", |scene| {
+                move_before(&mut scene.masks, |candidate| candidate.id == mask, to);
+            }),
             Command::SetReferenceVisible { name, visible } => {
                 self.change("Show or hide reference", |scene| {
                     let named = scene.references.iter_mut().filter(|reference| *reference.name == *name);
@@ -62,20 +79,21 @@ impl Session {
             Command::Place { photo, object } => self.place(photo, object, now_ms),
             Command::Withdraw { photo, object } => self.withdraw(photo, object),
             Command::SetPose { photo, object, camera_from_object, source } => {
-                self.set_pose(photo, object, camera_from_object, source, now_ms)
+                self.set_pose("Set pose", (photo, object), camera_from_object, source, now_ms)
             }
-            Command::Nudge { photo, object, camera_from_object, label } => {
-                self.nudge(Burst { label, photo, object, last_ms: now_ms }, camera_from_object)
+            Command::SetPoseFromText(text) => self.set_pose_from_text(&text, now_ms),
+            Command::SetPoseFromReference { name } => self.set_pose_from_reference(&name, now_ms),
+            Command::CopyPosesFrom(photo) => self.copy_poses_from(photo, now_ms),
+            Command::Nudge(nudge, factor) => self.nudge(nudge, factor, now_ms),
+            Command::Step { photo, object, camera_from_object, label } => {
+                self.step((photo, object), camera_from_object, label, now_ms)
             }
             Command::BeginGesture(label) => {
-                self.finish_gesture();
-                self.gesture = Some(Gesture { label, before: self.snapshot(), revision: self.revision });
+                self.begin_gesture(label);
                 Ok(Vec::new())
             }
             Command::Drag { photo, object, camera_from_object } => {
-                self.check_movable(photo, object)?;
-                self.write_pose(photo, object, camera_from_object, PoseSource::Manual, now_ms);
-                Ok(Vec::new())
+                self.drag((photo, object), camera_from_object, now_ms)
             }
             Command::EndGesture => {
                 self.finish_gesture();
@@ -87,15 +105,16 @@ impl Session {
                 }
                 Ok(Vec::new())
             }
+            Command::ReturnTo(entry) => self.return_to(&entry, now_ms),
         }
     }
 
     /// Names the scene in all of its history: what it is called is no step of the work.
-    fn name_scene(&mut self, name: &str) {
+    fn rename_scene(&mut self, name: &str) {
         self.finish_gesture();
         if self.scene.name != name {
             name.clone_into(&mut self.scene.name);
-            self.history.name_scenes(name);
+            self.history.rename_scenes(name);
             self.touched();
         }
     }
@@ -113,27 +132,42 @@ impl Session {
         Ok(Vec::new())
     }
 
-    fn with_photo(&mut self, photo: PhotoId, label: &str, edit: impl FnOnce(&mut Scene)) -> Applied {
+    /// Changes the scene; changes of one thing in quick succession (a slider under the hand) are one undo step.
+    pub(super) fn change_smoothly(
+        &mut self,
+        key: BurstKey,
+        now_ms: f64,
+        edit: impl FnOnce(&mut Scene),
+    ) -> Applied {
+        let goes_on = self.burst.as_ref().is_some_and(|burst| burst.continues(&key, now_ms));
+        if !goes_on {
+            self.change(key.label, edit)?;
+        } else {
+            edit(&mut self.scene);
+            self.touched();
+        }
+        self.burst = Some(Burst { key, last_ms: now_ms });
+        Ok(Vec::new())
+    }
+
+    pub(super) fn with_photo(
+        &mut self,
+        photo: PhotoId,
+        label: &str,
+        edit: impl FnOnce(&mut Scene),
+    ) -> Applied {
         self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?;
         self.change(label, edit)
     }
 
-    fn with_object(&mut self, object: ObjectId, label: &str, edit: impl FnOnce(&mut Scene)) -> Applied {
+    pub(super) fn with_object(
+        &mut self,
+        object: ObjectId,
+        label: &str,
+        edit: impl FnOnce(&mut Scene),
+    ) -> Applied {
         self.scene.object(object).ok_or(CommandError::NoObject(object))?;
         self.change(label, edit)
-    }
-
-    fn edit_object(
-        &mut self,
-        id: ObjectId,
-        label: &str,
-        edit: impl FnOnce(&mut crate::scene::Object),
-    ) -> Applied {
-        self.with_object(id, label, |scene| {
-            if let Some(object) = scene.object_mut(id) {
-                edit(object);
-            }
-        })
     }
 
     pub(super) fn show_photo(&mut self, photo: PhotoId) -> Applied {
@@ -145,89 +179,50 @@ impl Session {
         Ok(Vec::new())
     }
 
-    fn select(&mut self, object: Option<ObjectId>) -> Applied {
+    pub(super) fn select(&mut self, object: Option<ObjectId>) -> Applied {
         if let Some(object) = object {
             self.scene.object(object).ok_or(CommandError::NoObject(object))?;
         }
-        if self.selected != object {
+        if self.selected != object || !self.also_selected.is_empty() {
             self.selected = object;
+            self.also_selected.clear();
             self.touched();
         }
         Ok(Vec::new())
     }
 
-    fn place(&mut self, photo: PhotoId, object: ObjectId, now_ms: f64) -> Applied {
+    fn select_also(&mut self, object: ObjectId) -> Applied {
         self.scene.object(object).ok_or(CommandError::NoObject(object))?;
-        self.with_photo(photo, "Place object", |scene| scene.place(photo, object, now_ms))?;
-        self.select(Some(object))
+        if self.selected == Some(object) {
+            self.selected = self.also_selected.pop_last();
+        } else if !self.also_selected.remove(&object) {
+            self.also_selected.extend(self.selected);
+            self.selected = Some(object);
+        }
+        self.touched();
+        Ok(Vec::new())
     }
 
-    fn withdraw(&mut self, photo: PhotoId, object: ObjectId) -> Applied {
-        self.scene.annotation(photo, object).ok_or_else(|| self.not_in_photo(object))?;
-        self.change("Take object out of the photo", |scene| {
-            scene.annotations.remove(&(photo, object));
-        })
-    }
-
-    fn set_pose(
+    fn set_camera(
         &mut self,
         photo: PhotoId,
-        object: ObjectId,
-        pose: Pose,
-        source: PoseSource,
+        camera: Intrinsics,
+        origin: CameraOrigin,
         now_ms: f64,
     ) -> Applied {
-        self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?;
-        let target = self.scene.object(object).ok_or(CommandError::NoObject(object))?;
+        let camera = camera.checked().map_err(|error| CommandError::Failed(error.to_string()))?;
+        let target = self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?;
         if target.locked {
             return Err(CommandError::Locked(target.name.clone()));
         }
-        self.finish_gesture();
-        let before = self.snapshot();
-        self.write_pose(photo, object, pose, source, now_ms);
-        self.history.push("Set pose", before);
-        Ok(Vec::new())
+        let key = BurstKey { label: "Set camera", photo: Some(photo), target: photo.0 };
+        self.change_smoothly(key, now_ms, |scene| scene.set_camera(photo, camera, origin))
     }
 
-    fn nudge(&mut self, step: Burst, pose: Pose) -> Applied {
-        self.check_movable(step.photo, step.object)?;
-        // Within a drag, a step belongs to the drag.
-        if self.gesture.is_none() {
-            if !self.burst.as_ref().is_some_and(|burst| burst.continues(&step)) {
-                self.history.push(step.label, self.snapshot());
-            }
-            self.burst = Some(step.clone());
-        }
-        self.write_pose(step.photo, step.object, pose, PoseSource::Manual, step.last_ms);
-        Ok(Vec::new())
-    }
-
-    fn check_movable(&self, photo: PhotoId, object: ObjectId) -> Result<(), CommandError> {
-        let annotation = self.scene.annotation(photo, object).ok_or_else(|| self.not_in_photo(object))?;
-        let target = self.scene.object(object).ok_or(CommandError::NoObject(object))?;
-        if target.locked || annotation.state == AnnotationState::Confirmed {
-            return Err(CommandError::Locked(target.name.clone()));
-        }
-        Ok(())
-    }
-
-    fn not_in_photo(&self, object: ObjectId) -> CommandError {
-        match self.scene.object(object) {
-            Some(object) => CommandError::NotInPhoto(object.name.clone()),
-            None => CommandError::NoObject(object),
-        }
-    }
-
-    fn write_pose(&mut self, photo: PhotoId, object: ObjectId, pose: Pose, source: PoseSource, now_ms: f64) {
-        let annotation = Annotation {
-            camera_from_object: pose,
-            state: AnnotationState::Posed,
-            source,
-            changed_at_ms: now_ms,
-            camera_changed: false,
-        };
-        self.scene.annotations.insert((photo, object), annotation);
-        self.touched();
+    fn reset_camera(&mut self, photo: PhotoId, now_ms: f64) -> Applied {
+        let (camera, origin) =
+            self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?.given_camera.clone();
+        self.set_camera(photo, camera, origin, now_ms)
     }
 
     /// Makes the drag under way, if any, one undo step.
@@ -236,18 +231,27 @@ impl Session {
         if let Some(gesture) = self.gesture.take()
             && gesture.before.scene != self.scene
         {
+            self.record_changes(&gesture.before.scene, gesture.label);
             self.history.push(gesture.label, gesture.before);
         }
     }
 
     pub(super) fn snapshot(&self) -> Snapshot {
-        Snapshot { scene: self.scene.clone(), photo: self.photo, selected: self.selected }
+        Snapshot {
+            scene: self.scene.clone(),
+            photo: self.photo,
+            selected: self.selected,
+            also_selected: self.also_selected.clone(),
+            log_cleared: self.log.cleared,
+        }
     }
 
     pub(super) fn restore(&mut self, snapshot: Snapshot) {
         self.scene = snapshot.scene;
         self.photo = snapshot.photo;
         self.selected = snapshot.selected;
+        self.also_selected = snapshot.also_selected;
+        self.log.cleared = snapshot.log_cleared;
         self.burst = None;
         self.keep_selection_valid();
         self.touched();
@@ -262,8 +266,10 @@ impl Session {
         if self.photo().is_none() {
             self.photo = self.scene.photos.first().map(|photo| photo.id);
         }
+        let scene = &self.scene;
+        self.also_selected.retain(|id| scene.object(*id).is_some());
         if self.selected.is_none_or(|id| self.scene.object(id).is_none()) {
-            self.selected = None;
+            self.selected = self.also_selected.pop_last();
             self.select_something_in_photo();
         }
     }
@@ -274,6 +280,15 @@ impl Session {
         let selected_is_here = self.selected.is_some_and(|id| self.scene.annotation(photo, id).is_some());
         if !selected_is_here && let Some((object, _)) = self.scene.objects_in(photo).next() {
             self.selected = Some(object.id);
+            self.also_selected.clear();
         }
     }
+}
+
+/// Moves an entry before the one that is at position `to` now; past the end: to the end.
+fn move_before<T>(list: &mut Vec<T>, is_moved: impl Fn(&T) -> bool, to: usize) {
+    let Some(from) = list.iter().position(is_moved) else { return };
+    let entry = list.remove(from);
+    let to = if to > from { to - 1 } else { to };
+    list.insert(to.min(list.len()), entry);
 }

@@ -1,13 +1,14 @@
-//! What can be asked of a session, and what it asks in return.
+//! What can be asked of a session.
 
 use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::{Batch, CommandId, Opening, Tool};
-use crate::formats::{CameraFile, Incoming, PosesAs};
+use super::{Answer, Batch, CommandId, LogEntry, Nudge, NudgeSettings, Opening, Panes, Tool};
 use crate::math::{Intrinsics, Pose};
-use crate::scene::{CameraOrigin, ObjectId, PhotoId, PoseSource};
+use crate::scene::{
+    CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, PoseSource, Rgb,
+};
 
 /// One change. Only these change a session.
 #[derive(Debug, Clone)]
@@ -16,26 +17,39 @@ pub enum Command {
     Run(CommandId),
     /// Files of one drop, read.
     Import(Box<Batch>),
+    /// Masks for the photo that is shown, and for the selected object.
+    ImportMasks(Vec<Arc<PhotoAsset>>),
     /// A saved scene in place of this one.
     Open(Box<Opening>),
     Answer(Answer),
+    RenameScene(String),
 
-    /// What the scene is called; no undo step.
-    NameScene(String),
     ShowPhoto(PhotoId),
     Select(Option<ObjectId>),
+    /// Adds an object to the selection, or takes it out.
+    SelectAlso(ObjectId),
     SetTool(Tool),
-    SetOverlayOpacity(f32),
+    SetLook(Look),
+    SetPanes(Panes),
+    SetNudge(NudgeSettings),
 
     SetCamera {
         photo: PhotoId,
         camera: Intrinsics,
         origin: CameraOrigin,
     },
+    /// Back to the last camera that was not typed: from a file, else the photo's EXIF data, else the assumed one.
+    ResetCamera(PhotoId),
+    EditPhoto(PhotoId, PhotoChange),
+    EditObject(ObjectId, ObjectChange),
+    EditMask(MaskId, MaskChange),
     RemovePhoto(PhotoId),
     RemoveObject(ObjectId),
-    SetObjectVisible(ObjectId, bool),
-    SetObjectLocked(ObjectId, bool),
+    RemoveMask(MaskId),
+    /// Puts an entry of a list before the one that is at this position now.
+    MovePhoto(PhotoId, usize),
+    MoveObject(ObjectId, usize),
+    MoveMask(MaskId, usize),
     SetReferenceVisible {
         name: Arc<str>,
         visible: bool,
@@ -60,8 +74,18 @@ pub enum Command {
         camera_from_object: Pose,
         source: PoseSource,
     },
+    /// The selected object's pose, typed or pasted.
+    SetPoseFromText(String),
+    /// The selected object's pose as a reference has it.
+    SetPoseFromReference {
+        name: Arc<str>,
+    },
+    /// The poses that the selected objects have in another photo, in the one that is shown.
+    CopyPosesFrom(PhotoId),
+    /// So many steps of the selected object.
+    Nudge(Nudge, f64),
     /// Small steps of one kind, less than half a second apart, are one undo step.
-    Nudge {
+    Step {
         photo: PhotoId,
         object: ObjectId,
         camera_from_object: Pose,
@@ -77,65 +101,35 @@ pub enum Command {
     EndGesture,
     /// Puts everything back to where the gesture began.
     CancelGesture,
+    /// The pose of a line of the log, in its photo.
+    ReturnTo(Box<LogEntry>),
 }
 
-/// What only the world outside can do.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Effect {
-    PickFiles,
-    LoadExample,
-    Download { file_name: String, bytes: Arc<[u8]> },
-    ZoomToObject,
-    FitPhoto,
-    TogglePanels,
-    ToggleShortcuts,
-    Notify(Notice),
+pub enum PhotoChange {
+    Name(String),
+    Visible(bool),
+    Opacity(f32),
+    Locked(bool),
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Severity {
-    Info,
-    Warning,
-    Error,
-}
-
-/// One message to the user.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Notice {
-    pub severity: Severity,
-    pub text: String,
+pub enum ObjectChange {
+    Name(String),
+    Color(Rgb),
+    Opacity(f32),
+    Visible(bool),
+    Locked(bool),
+    MeshFrame(MeshFrame),
 }
 
-impl Notice {
-    pub fn info(text: impl Into<String>) -> Self {
-        Self { severity: Severity::Info, text: text.into() }
-    }
-
-    pub fn warning(text: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, text: text.into() }
-    }
-
-    pub fn error(text: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, text: text.into() }
-    }
-}
-
-/// What the user has to decide before an import goes on.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Question {
-    /// Are these poses to go on from, or to compare with?
-    PosesAs(Incoming),
-    /// The camera is for an image of another size than the photos'.
-    CameraSize { file: CameraFile, photos: Vec<PhotoId> },
-}
-
-/// The answer to the question that is open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Answer {
-    UsePosesAs(PosesAs),
-    ScaleCamera,
-    /// Leave the import out.
-    Refuse,
+pub enum MaskChange {
+    Name(String),
+    Color(Rgb),
+    Opacity(f32),
+    Visible(bool),
+    Object(Option<ObjectId>),
 }
 
 /// Why a command was not carried out; nothing has changed then.
@@ -147,10 +141,16 @@ pub enum CommandError {
     NoPhoto(PhotoId),
     #[error("there is no object with the id {}", .0.0)]
     NoObject(ObjectId),
+    #[error("there is no mask with the id {}", .0.0)]
+    NoMask(MaskId),
     #[error("{0} is not in this photo")]
     NotInPhoto(String),
     #[error("{0} is locked")]
     Locked(String),
+    #[error("{0} is confirmed in this photo: reopen it to change its pose")]
+    Confirmed(String),
+    #[error(transparent)]
+    MeshFrame(#[from] MeshFrameError),
     #[error("{0}")]
     Failed(String),
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{Answer, CommandError, Effect, History, Look, Notice, Question, Session, Waiting};
+use super::log::Log;
+use super::{Answer, Arrangement, CommandError, Effect, History, Notice, Question, Session, Waiting};
 use crate::formats::{CameraFile, Document, Incoming, Outcome, PosesAs};
-use crate::scene::{CameraOrigin, MeshAsset, PhotoAsset, PhotoId, Scene};
+use crate::scene::{CameraOrigin, Mask, MeshAsset, PhotoAsset, PhotoId, Scene};
 
 /// The files of one drop, read.
 #[derive(Debug, Clone, Default)]
@@ -253,13 +254,15 @@ impl Session {
             }
         }
         let outcome = incoming.apply(&mut scene, PosesAs::Annotations, now_ms);
+        restore_masks(&mut scene, document, &opening.photos);
         self.scene = scene;
         self.questions.clear();
         self.waiting.clear();
-        self.look = Look {
-            overlay_opacity: document.view.overlay_opacity.clamp(0.0, 1.0),
-            outline: document.view.outline,
-        };
+        self.log = Log::default();
+        self.look = document.view.look();
+        self.panes.arrangement = Arrangement::from_name(&document.view.panes).unwrap_or_default();
+        let distance_mm = document.view.image_distance_mm;
+        self.panes.image_distance_mm = distance_mm.filter(|mm| mm.is_finite() && *mm > 0.0);
         self.restore_view(document);
         if opening.restored {
             self.history = History::default();
@@ -282,6 +285,28 @@ impl Session {
         self.photo = photo.and_then(|index| self.scene.photos.get(index)).map(|photo| photo.id);
         self.selected = object.and_then(|index| self.scene.objects.get(index)).map(|object| object.id);
         self.keep_selection_valid();
+    }
+}
+
+/// Masks belong to photos and objects by their positions in the document, which are those in the scene: both are added in
+/// its order.
+fn restore_masks(scene: &mut Scene, document: &Document, images: &[Arc<PhotoAsset>]) {
+    for mask in document.masks() {
+        let asset = images.iter().find(|image| image.sha256 == mask.sha256);
+        let photo = document.photo_hashes().nth(mask.photo).flatten();
+        let photo = scene.photos.iter().find(|candidate| Some(candidate.asset.sha256) == photo);
+        let (Some(asset), Some(photo)) = (asset, photo.map(|photo| photo.id)) else { continue };
+        let object = mask.object.and_then(|index| scene.objects.get(index)).map(|object| object.id);
+        let id = scene.add_mask(photo, object, asset.clone());
+        if let Some(known) = scene.masks.iter_mut().find(|candidate| candidate.id == id) {
+            *known = Mask {
+                name: mask.name,
+                color: mask.color,
+                opacity: mask.opacity,
+                visible: mask.visible,
+                ..known.clone()
+            };
+        }
     }
 }
 

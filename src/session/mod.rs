@@ -3,58 +3,58 @@
 //! Knows nothing of pixels, files on disk or clocks: time is an argument, so that a script replays exactly.
 
 mod apply;
+mod availability;
 mod command;
+mod confirm;
+mod depth;
+mod edit;
+mod effect;
+mod export;
 mod history;
 mod import;
+mod log;
+mod nudge;
+mod pose;
 mod run;
 mod table;
+mod view;
 
-pub use command::{Answer, Command, CommandError, Effect, Notice, Question, Severity};
+use std::collections::BTreeSet;
+
+pub use command::{Command, CommandError, MaskChange, ObjectChange, PhotoChange};
+pub use depth::with_depth_changed;
+pub use effect::{Answer, Effect, Notice, Pick, PictureKind, PictureRequest, Question, Severity};
+pub use history::MAX_BYTES as HISTORY_BYTES;
 pub use import::{Batch, Opening};
+pub use log::LogEntry;
+pub use nudge::{Nudge, NudgeFrame, NudgeSettings};
 pub use table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
+pub use view::{Arrangement, Panes, Tool};
 
 use crate::formats::{Document, Incoming, Keep, PosesAs, ViewSettings};
-use crate::scene::{Annotation, ObjectId, Photo, PhotoId, Scene};
-use history::{Burst, History, Snapshot};
+use crate::scene::{Annotation, Look, ObjectId, Photo, PhotoId, Scene};
+use history::{Burst, BurstKey, History, Snapshot};
 
 /// Everything that is open.
 #[derive(Debug, Default)]
 pub struct Session {
     scene: Scene,
     photo: Option<PhotoId>,
+    /// The one that numbers and keys act on.
     selected: Option<ObjectId>,
+    also_selected: BTreeSet<ObjectId>,
     look: Look,
+    panes: Panes,
+    nudge: NudgeSettings,
     tool: Tool,
     history: History,
+    log: log::Log,
     gesture: Option<Gesture>,
     burst: Option<Burst>,
     questions: Vec<Question>,
     /// Poses and cameras whose photos or meshes have not come yet.
     waiting: Vec<Waiting>,
     revision: u64,
-}
-
-/// How the overlay is shown; no part of undo.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
-    /// 0 to 1, over all objects.
-    pub overlay_opacity: f32,
-    pub outline: bool,
-}
-
-impl Default for Look {
-    fn default() -> Self {
-        let ViewSettings { overlay_opacity, outline, .. } = ViewSettings::default();
-        Self { overlay_opacity, outline }
-    }
-}
-
-/// What the left mouse button does to an object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Tool {
-    #[default]
-    Move,
-    Rotate,
 }
 
 /// A drag under way: one undo step once it ends.
@@ -79,6 +79,11 @@ impl Session {
         &self.scene
     }
 
+    /// The scene without the gesture that is under way: what is worth saving.
+    pub fn settled_scene(&self) -> &Scene {
+        self.gesture.as_ref().map_or(&self.scene, |gesture| &gesture.before.scene)
+    }
+
     /// The photo that is shown.
     pub fn photo(&self) -> Option<&Photo> {
         self.scene.photo(self.photo?)
@@ -86,6 +91,15 @@ impl Session {
 
     pub fn selected(&self) -> Option<ObjectId> {
         self.selected
+    }
+
+    pub fn is_selected(&self, object: ObjectId) -> bool {
+        self.selected == Some(object) || self.also_selected.contains(&object)
+    }
+
+    /// All selected objects, in the order of the list.
+    pub fn selection(&self) -> Vec<ObjectId> {
+        self.scene.objects.iter().map(|object| object.id).filter(|id| self.is_selected(*id)).collect()
     }
 
     /// The selected object's pose in the photo that is shown.
@@ -98,8 +112,21 @@ impl Session {
         self.look
     }
 
+    pub fn panes(&self) -> Panes {
+        self.panes
+    }
+
+    pub fn nudge_settings(&self) -> NudgeSettings {
+        self.nudge
+    }
+
     pub fn tool(&self) -> Tool {
         self.tool
+    }
+
+    /// What was done to poses, oldest first.
+    pub fn log(&self) -> &[LogEntry] {
+        self.log.entries()
     }
 
     pub fn gesture_under_way(&self) -> bool {
@@ -129,32 +156,28 @@ impl Session {
         self.revision
     }
 
-    /// The scene as it was before the gesture under way: what is worth keeping if that gesture is never ended.
-    pub fn settled_scene(&self) -> &Scene {
-        self.gesture.as_ref().map_or(&self.scene, |gesture| &gesture.before.scene)
-    }
-
     /// The revision of [`Self::settled_scene`].
     pub fn settled_revision(&self) -> u64 {
         self.gesture.as_ref().map_or(self.revision, |gesture| gesture.revision)
     }
 
+    /// The session as our own document.
+    pub fn document(&self, keep: Keep) -> Document {
+        Document::from_scene(&self.scene, &self.view_settings(), keep)
+    }
+
+    /// The same without the gesture that is under way.
     pub fn settled_document(&self, keep: Keep) -> Document {
         Document::from_scene(self.settled_scene(), &self.view_settings(), keep)
     }
 
     /// What is on screen, for a document.
     pub fn view_settings(&self) -> ViewSettings {
-        ViewSettings {
-            photo: self.photo.map(|id| id.0),
-            selected: self.selected.map(|id| id.0),
-            overlay_opacity: self.look.overlay_opacity,
-            outline: self.look.outline,
-        }
-    }
-
-    /// The session as our own document.
-    pub fn document(&self, keep: Keep) -> Document {
-        Document::from_scene(&self.scene, &self.view_settings(), keep)
+        let mut view = ViewSettings::of_look(&self.look);
+        view.photo = self.photo.map(|id| id.0);
+        view.selected = self.selected.map(|id| id.0);
+        view.panes = self.panes.arrangement.name().to_owned();
+        view.image_distance_mm = self.panes.image_distance_mm;
+        view
     }
 }

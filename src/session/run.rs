@@ -1,102 +1,113 @@
 //! The commands of the table.
 
-use std::sync::Arc;
+use super::apply::Applied;
+use super::pose::STORED;
+use super::{Arrangement, Command, CommandError, CommandId, Effect, NudgeFrame, Pick, Session, Tool};
+use crate::formats::PoseText;
+use crate::scene::{Layers, Look};
 
-use super::{CommandError, CommandId, Effect, Notice, Session, Tool};
-use crate::formats::{Keep, write_document, write_workspace};
-use crate::scene::{Annotation, Scene, untouched_pose};
-
-type Applied = Result<Vec<Effect>, CommandError>;
+/// Where the wipe's line is when it is switched on.
+const WIPE_START: f32 = 0.5;
 
 impl Session {
     pub(super) fn run(&mut self, id: CommandId, now_ms: f64) -> Applied {
         if let Some(reason) = self.unavailable(id) {
             return Err(CommandError::NotAvailable(id.info().text, reason));
         }
+        if let Some(nudge) = id.nudge() {
+            return self.nudge(nudge, 1.0, now_ms);
+        }
+        if let Some(number) = id.selects() {
+            return self.select_number(number);
+        }
+        if let Some(effect) = effect_of(id) {
+            return Ok(vec![effect]);
+        }
         match id {
-            CommandId::OpenFiles => Ok(vec![Effect::PickFiles]),
-            CommandId::LoadExample => Ok(vec![Effect::LoadExample]),
-            CommandId::ZoomToObject => Ok(vec![Effect::ZoomToObject]),
-            CommandId::FitPhoto => Ok(vec![Effect::FitPhoto]),
-            CommandId::TogglePanels => Ok(vec![Effect::TogglePanels]),
-            CommandId::ToggleShortcuts => Ok(vec![Effect::ToggleShortcuts]),
-            CommandId::SavePoses => self.save_poses(),
-            CommandId::SaveWorkspace => self.save_workspace(),
-            CommandId::NewScene => self.new_scene(),
-            CommandId::Undo => self.undo(),
-            CommandId::Redo => self.redo(),
+            CommandId::ExportPoses => self.export_poses(),
+            CommandId::ExportWorkspace => self.export_workspace(),
+            CommandId::ExportMesh => self.export_mesh(),
+            CommandId::ExportOverlay
+            | CommandId::ExportMask
+            | CommandId::ExportVisibleMask
+            | CommandId::ExportDepth => self.export_picture(id),
+            CommandId::Undo => Ok(self.undo()),
+            CommandId::Redo => Ok(self.redo()),
+            CommandId::CopyPose => self.copy_pose(PoseText::Matrix),
+            CommandId::CopyPoseNumPy => self.copy_pose(PoseText::NumPy),
+            CommandId::CopyPoseJson => self.copy_pose(PoseText::Json),
+            CommandId::SelectAll => Ok(self.select_all()),
+            CommandId::DuplicateObject => self.duplicate_selected(now_ms),
+            CommandId::LinkObjects => self.link_selected(),
+            CommandId::UnlinkObjects => self.unlink_selected(),
+            CommandId::RemoveObject => self.remove_selected(),
+            CommandId::RemovePhoto => match self.photo {
+                Some(photo) => self.apply(Command::RemovePhoto(photo), now_ms),
+                None => Ok(Vec::new()),
+            },
+            CommandId::ClearLog => Ok(self.clear_log()),
             CommandId::NextPhoto => self.step_photo(1),
             CommandId::PreviousPhoto => self.step_photo(-1),
+            CommandId::MoveTool => self.apply(Command::SetTool(Tool::Move), now_ms),
+            CommandId::RotateTool => self.apply(Command::SetTool(Tool::Rotate), now_ms),
+            CommandId::ConfirmAndNext => self.confirm_and_next(now_ms),
+            CommandId::Reopen => self.reopen(),
             CommandId::ResetPose => self.reset_pose(now_ms),
-            CommandId::Cancel => self.apply(super::Command::CancelGesture, now_ms),
-            CommandId::RemoveObject | CommandId::RemovePhoto => self.remove_shown(id, now_ms),
-            CommandId::MoveTool => self.apply(super::Command::SetTool(Tool::Move), now_ms),
-            CommandId::RotateTool => self.apply(super::Command::SetTool(Tool::Rotate), now_ms),
-            CommandId::ToggleOutline => {
-                self.look.outline = !self.look.outline;
-                self.touched();
-                Ok(Vec::new())
-            }
+            CommandId::StoreReference => self.store_reference(),
+            CommandId::BackToReference => self.set_pose_from_reference(STORED, now_ms),
+            CommandId::CopyFromPrevious => self.copy_from_previous(now_ms),
+            CommandId::Cancel => self.apply(Command::CancelGesture, now_ms),
+            _ => Ok(self.change_view(id)),
         }
     }
 
-    fn save_poses(&mut self) -> Applied {
-        let document = self.document(Keep::Annotated);
-        let count = document.pose_count();
-        let file_name = format!("{}.json", self.file_stem("poses"));
-        let notice = match count {
-            0 => {
-                Notice::warning(format!("{file_name}: no object has been posed yet, the file holds no poses"))
+    /// Commands that change how the scene is looked at.
+    fn change_view(&mut self, id: CommandId) -> Vec<Effect> {
+        let Look { mode, outline, x_ray, layers, wipe, difference, .. } = self.look;
+        match id {
+            CommandId::CycleViews => self.panes.arrangement = self.panes.arrangement.next(),
+            CommandId::PhotoView => self.panes.arrangement = Arrangement::Photo,
+            CommandId::SceneView => self.panes.arrangement = Arrangement::Scene,
+            CommandId::SplitView => self.panes.arrangement = Arrangement::Split,
+            CommandId::NextOverlay => self.look.mode = mode.next(),
+            CommandId::ToggleOverlay => {
+                let hidden = layers == Layers::PhotoOnly;
+                self.look.layers = if hidden { Layers::Both } else { Layers::PhotoOnly };
             }
-            1 => Notice::info(format!("{file_name}: 1 pose saved")),
-            _ => Notice::info(format!("{file_name}: {count} poses saved")),
-        };
-        let bytes = Arc::from(write_document(&document).into_bytes());
-        Ok(vec![Effect::Download { file_name, bytes }, Effect::Notify(notice)])
+            CommandId::NextLayers => self.look.layers = layers.next(),
+            CommandId::ToggleOutline => self.look.outline = !outline,
+            CommandId::ToggleXRay => self.look.x_ray = !x_ray,
+            CommandId::ToggleWipe => self.look.wipe = wipe.is_none().then_some(WIPE_START),
+            CommandId::ToggleDifference => self.look.difference = !difference,
+            CommandId::ToggleGizmo => self.panes.gizmo = !self.panes.gizmo,
+            CommandId::ToggleNudgeFrame => {
+                self.nudge.frame = match self.nudge.frame {
+                    NudgeFrame::Camera => NudgeFrame::Object,
+                    NudgeFrame::Object => NudgeFrame::Camera,
+                };
+            }
+            _ => debug_assert!(false, "{id:?} is answered elsewhere"),
+        }
+        self.touched();
+        Vec::new()
     }
 
-    fn save_workspace(&mut self) -> Applied {
-        let document = self.document(Keep::Everything);
-        let bytes = write_workspace(&document, &self.scene)
-            .map_err(|error| CommandError::Failed(error.to_string()))?;
-        let file_name = format!("{}.zip", self.file_stem("workspace"));
-        Ok(vec![Effect::Download { file_name, bytes: Arc::from(bytes) }])
-    }
-
-    /// The scene's name, else the only photo's, else `otherwise`: what a person looks for among downloads.
-    fn file_stem(&self, otherwise: &str) -> String {
-        let name = match self.scene.photos.as_slice() {
-            _ if !self.scene.name.is_empty() => self.scene.name.as_str(),
-            [photo] => crate::scene::file_stem(&photo.asset.file_name),
-            _ => return format!("pinpose-{otherwise}"),
-        };
-        let safe: String =
-            name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
-        format!("{safe}-{otherwise}")
-    }
-
-    fn new_scene(&mut self) -> Applied {
-        self.questions.clear();
-        self.waiting.clear();
-        self.change("New scene", |scene| *scene = Scene::default())
-    }
-
-    fn undo(&mut self) -> Applied {
+    fn undo(&mut self) -> Vec<Effect> {
         self.finish_gesture();
         let present = self.snapshot();
         if let Some(before) = self.history.undo(present) {
             self.restore(before);
         }
-        Ok(Vec::new())
+        Vec::new()
     }
 
-    fn redo(&mut self) -> Applied {
+    fn redo(&mut self) -> Vec<Effect> {
         self.finish_gesture();
         let present = self.snapshot();
         if let Some(after) = self.history.redo(present) {
             self.restore(after);
         }
-        Ok(Vec::new())
+        Vec::new()
     }
 
     fn step_photo(&mut self, step: isize) -> Applied {
@@ -109,26 +120,75 @@ impl Session {
         }
     }
 
-    fn reset_pose(&mut self, now_ms: f64) -> Applied {
-        let Some((photo, object, _)) = self.selected_annotation() else { return Ok(Vec::new()) };
-        let start = self.photo().zip(self.scene.object(object));
-        let Some(pose) = start.map(|(photo, object)| untouched_pose(&photo.camera, &object.mesh.mesh)) else {
-            return Ok(Vec::new());
-        };
-        self.change("Reset pose", |scene| {
-            scene.annotations.insert((photo, object), Annotation::untouched(pose, now_ms));
-        })
-    }
-
-    fn remove_shown(&mut self, id: CommandId, now_ms: f64) -> Applied {
-        match (id, self.photo, self.selected) {
-            (CommandId::RemovePhoto, Some(photo), _) => {
-                self.apply(super::Command::RemovePhoto(photo), now_ms)
-            }
-            (CommandId::RemoveObject, _, Some(object)) => {
-                self.apply(super::Command::RemoveObject(object), now_ms)
-            }
-            _ => Ok(Vec::new()),
+    fn copy_from_previous(&mut self, now_ms: f64) -> Applied {
+        let photos = &self.scene.photos;
+        let shown = photos.iter().position(|photo| Some(photo.id) == self.photo);
+        let before = shown.and_then(|shown| photos.get(shown.checked_sub(1)?)).map(|photo| photo.id);
+        match before {
+            Some(before) => self.copy_poses_from(before, now_ms),
+            None => Ok(Vec::new()),
         }
     }
+
+    fn select_number(&mut self, number: usize) -> Applied {
+        let Some(photo) = self.photo else { return Ok(Vec::new()) };
+        let object = self.scene.objects_in(photo).nth(number).map(|(object, _)| object.id);
+        match object {
+            Some(object) => self.select(Some(object)),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn select_all(&mut self) -> Vec<Effect> {
+        let Some(photo) = self.photo else { return Vec::new() };
+        self.also_selected = self.scene.objects_in(photo).map(|(object, _)| object.id).collect();
+        let present = self.selected.filter(|selected| self.also_selected.contains(selected));
+        self.selected = present.or_else(|| self.also_selected.first().copied());
+        if let Some(selected) = self.selected {
+            self.also_selected.remove(&selected);
+        }
+        self.touched();
+        Vec::new()
+    }
+
+    fn remove_selected(&mut self) -> Applied {
+        let selection = self.selection();
+        self.change("Remove object", |scene| selection.iter().for_each(|id| scene.remove_object(*id)))
+    }
+
+    fn clear_log(&mut self) -> Vec<Effect> {
+        self.finish_gesture();
+        let before = self.snapshot();
+        self.log.clear();
+        self.history.push("Clear history list", before);
+        Vec::new()
+    }
+}
+
+/// What only the world outside can do.
+fn effect_of(id: CommandId) -> Option<Effect> {
+    Some(match id {
+        CommandId::OpenFiles => Effect::PickFiles(Pick::Anything),
+        CommandId::ImportPhotos => Effect::PickFiles(Pick::Photos),
+        CommandId::ImportMeshes => Effect::PickFiles(Pick::Meshes),
+        CommandId::ImportMasks => Effect::PickFiles(Pick::Masks),
+        CommandId::ImportCamera => Effect::PickFiles(Pick::Cameras),
+        CommandId::ImportPoses => Effect::PickFiles(Pick::Poses),
+        CommandId::OpenWorkspace => Effect::PickFiles(Pick::Workspace),
+        CommandId::LoadExample => Effect::LoadExample,
+        CommandId::NewScene => Effect::NewScene,
+        CommandId::OpenScene => Effect::ShowScenes,
+        CommandId::SaveScene => Effect::SaveNow,
+        CommandId::SaveSceneAs => Effect::AskSaveAs,
+        CommandId::PastePose => Effect::AskForPose,
+        CommandId::RenameObject => Effect::RenameSelected,
+        CommandId::ZoomToObject => Effect::ZoomToObject,
+        CommandId::FitPhoto => Effect::FitPhoto,
+        CommandId::ResetSceneView => Effect::ResetSceneView,
+        CommandId::TogglePanels => Effect::TogglePanels,
+        CommandId::ToggleTheme => Effect::ToggleTheme,
+        CommandId::TogglePalette => Effect::TogglePalette,
+        CommandId::ToggleShortcuts => Effect::ToggleShortcuts,
+        _ => return None,
+    })
 }

@@ -2,7 +2,7 @@
 
 use egui::{Grid, Id, Modal, RichText, Ui};
 
-use super::{UiState, shortcut_text, theme};
+use super::{Dialog, UiState, shortcut_text, theme};
 use crate::formats::PosesAs;
 use crate::session::{Answer, COMMANDS, Command, Question, Session};
 
@@ -41,12 +41,12 @@ pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, command
         }
         return;
     }
-    if state.shortcuts_open {
+    if state.open == Some(Dialog::Shortcuts) {
         let modal = Modal::new(Id::unique("shortcuts"))
             .frame(theme::dialog_frame(ctx))
-            .show(ctx, |ui| shortcuts(ui, &mut state.shortcuts_open));
+            .show(ctx, |ui| shortcuts(ui, &mut state.open));
         if modal.should_close() {
-            state.shortcuts_open = false;
+            state.open = None;
         }
     }
 }
@@ -95,13 +95,13 @@ fn answer(ui: &mut Ui, button: egui::Button<'_>, meaning: &str, answer: Answer, 
     });
 }
 
-fn shortcuts(ui: &mut Ui, open: &mut bool) {
+fn shortcuts(ui: &mut Ui, open: &mut Option<Dialog>) {
     ui.set_width(520.0);
     ui.horizontal(|ui| {
         ui.heading("Mouse and keys");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if ui.button("Close").clicked() {
-                *open = false;
+                *open = None;
             }
         });
     });

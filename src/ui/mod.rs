@@ -29,12 +29,27 @@ pub use viewport::{SharedRenderer, ViewportPlace};
 #[derive(Debug, Default)]
 pub struct UiState {
     pub panels_hidden: bool,
-    pub shortcuts_open: bool,
+    /// The window that is open over everything.
+    pub open: Option<Dialog>,
     pub toasts: Toasts,
     pub scenes_dialog: scenes_dialog::State,
     camera_form: camera_panel::CameraForm,
     /// Where the viewport was in the last frame.
     pub viewport: Option<ViewportPlace>,
+}
+
+/// Windows that come up over the rest, one at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialog {
+    Shortcuts,
+    Palette,
+    PastePose,
+}
+
+impl UiState {
+    pub fn toggle(&mut self, dialog: Dialog) {
+        self.open = if self.open == Some(dialog) { None } else { Some(dialog) };
+    }
 }
 
 /// What the interface shows besides the session.

@@ -7,7 +7,7 @@ use egui::{Align, Button, Layout, RichText, Sense, Slider, Ui, Vec2};
 use super::icons::{Icon, icon_button};
 use super::theme;
 use crate::scene::{Annotation, AnnotationState, Object, Photo, Scene, reference_color};
-use crate::session::{Command, CommandId, Session};
+use crate::session::{Command, CommandId, ObjectChange, Session};
 
 pub fn photos(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     theme::section(ui, "Photos");
@@ -109,11 +109,11 @@ fn object_buttons(
     }
     let (icon, tooltip) = if object.locked { (Icon::Lock, "Unlock") } else { (Icon::LockOpen, "Lock") };
     if row_button(ui, icon, &format!("{tooltip} {}", object.name)) {
-        commands.push(Command::SetObjectLocked(object.id, !object.locked));
+        commands.push(Command::EditObject(object.id, ObjectChange::Locked(!object.locked)));
     }
     let (icon, tooltip) = if object.visible { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
     if row_button(ui, icon, &format!("{tooltip} {}", object.name)) {
-        commands.push(Command::SetObjectVisible(object.id, !object.visible));
+        commands.push(Command::EditObject(object.id, ObjectChange::Visible(!object.visible)));
     }
 }
 
@@ -148,7 +148,10 @@ pub fn overlay(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let mut percent = session.look().overlay_opacity * 100.0;
     let slider = Slider::new(&mut percent, 0.0..=100.0).text("opacity").suffix(" %").fixed_decimals(0);
     if ui.add(slider).changed() {
-        commands.push(Command::SetOverlayOpacity(percent / 100.0));
+        commands.push(Command::SetLook(crate::scene::Look {
+            overlay_opacity: percent / 100.0,
+            ..session.look()
+        }));
     }
     let mut outline = session.look().outline;
     if ui

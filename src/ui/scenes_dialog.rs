@@ -75,6 +75,8 @@ pub fn draw(ctx: &Context, around: &Surroundings<'_>, state: &mut State, request
     if !state.is_open() {
         return;
     }
+    // Esc goes back one step.
+    let has_step_back = state.renaming.is_some() || state.is_deleting;
     let modal =
         Modal::new(Id::unique("scenes")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| match &state.page {
             Page::Name(_) => name_form(ui, state, requests),

@@ -28,7 +28,7 @@ fn matches(shortcut: Shortcut, key: Key, physical_key: Key, modifiers: egui::Mod
     wanted == Some(physical_key)
         && modifiers.command == shortcut.ctrl
         && modifiers.shift == shortcut.shift
-        && !modifiers.alt
+        && modifiers.alt == shortcut.alt
 }
 
 /// A shortcut as it is printed in menus.
@@ -37,10 +37,22 @@ pub fn shortcut_text(shortcut: Shortcut) -> String {
     if shortcut.ctrl {
         text += "Ctrl+";
     }
+    if shortcut.alt {
+        text += "Alt+";
+    }
     if shortcut.shift {
         text += "Shift+";
     }
-    text + if shortcut.key == "Escape" { "Esc" } else { shortcut.key }
+    text + match shortcut.key {
+        "Escape" => "Esc",
+        "ArrowLeft" => "Left",
+        "ArrowRight" => "Right",
+        "ArrowUp" => "Up",
+        "ArrowDown" => "Down",
+        "OpenBracket" => "[",
+        "CloseBracket" => "]",
+        key => key,
+    }
 }
 
 #[cfg(test)]

@@ -114,7 +114,7 @@ fn status(ui: &mut Ui, session: &Session, around: &Surroundings<'_>, asked: &mut
 fn not_saved(ui: &mut Ui, reason: &str, asked: &mut Asked) {
     let download = theme::primary_button("Download workspace");
     if ui.add(download).on_hover_text("A file with everything in it, to open again later").clicked() {
-        asked.commands.push(Command::Run(CommandId::SaveWorkspace));
+        asked.commands.push(Command::Run(CommandId::ExportWorkspace));
     }
     ui.label(RichText::new("Not saved in this browser").color(theme::ERROR)).on_hover_text(reason);
 }

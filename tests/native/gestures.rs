@@ -199,7 +199,9 @@ fn escape_puts_the_drag_back_and_the_rest_of_it_does_nothing() {
 fn a_locked_object_stays_while_the_hand_moves() {
     let mut hand = Hand::new();
     let object = hand.session.selected().unwrap();
-    hand.session.apply(Command::SetObjectLocked(object, true), NOW_MS).unwrap();
+    hand.session
+        .apply(Command::EditObject(object, pinpose::session::ObjectChange::Locked(true)), NOW_MS)
+        .unwrap();
     let (before, middle) = (hand.pose(), hand.middle());
     hand.drag(Button::Left, middle, middle + DVec2::new(50.0, 0.0));
     assert_eq!(hand.pose(), before);

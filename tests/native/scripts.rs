@@ -4,7 +4,7 @@ use glam::DVec3;
 use pinpose::formats::PosesAs;
 use pinpose::math::{Intrinsics, Pose};
 use pinpose::scene::{AnnotationState, CameraOrigin, PoseSource};
-use pinpose::session::{Answer, COMMANDS, Command, CommandId, Effect, Question, Session};
+use pinpose::session::{Answer, COMMANDS, Command, CommandId, Effect, ObjectChange, Question, Session};
 
 use crate::support::{CAMERA_JSON, NOW_MS, box_mesh, drop_files, flat_photo, small_session, text_file};
 
@@ -89,13 +89,13 @@ fn cancelling_a_gesture_leaves_no_trace() {
 }
 
 #[test]
-fn nudges_close_in_time_are_one_step() {
+fn steps_close_in_time_are_one() {
     let mut session = small_session();
     let (photo, object, _) = session.selected_annotation().unwrap();
     let start = shown_pose(&session);
     let mut nudge = |time_ms: f64| {
         let camera_from_object = shown_pose(&session).translated(DVec3::Z);
-        let command = Command::Nudge { photo, object, camera_from_object, label: "Change depth" };
+        let command = Command::Step { photo, object, camera_from_object, label: "Change depth" };
         session.apply(command, NOW_MS + time_ms).unwrap();
     };
     [0.0, 300.0, 600.0, 1200.0].into_iter().for_each(&mut nudge);
@@ -109,7 +109,7 @@ fn nudges_close_in_time_are_one_step() {
 fn a_locked_object_does_not_move() {
     let mut session = small_session();
     let (photo, object, _) = session.selected_annotation().unwrap();
-    run(&mut session, Command::SetObjectLocked(object, true));
+    run(&mut session, Command::EditObject(object, ObjectChange::Locked(true)));
     let moved = Pose::from_translation(DVec3::Z * 400.0);
     let drag = Command::Drag { photo, object, camera_from_object: moved };
     assert!(session.apply(drag, NOW_MS).unwrap_err().to_string().contains("locked"));
@@ -211,11 +211,11 @@ fn every_command_of_the_table_does_something() {
 fn downloads_hold_what_they_say() {
     let mut session = small_session();
     drag(&mut session, DVec3::X);
-    let effects = run(&mut session, Command::Run(CommandId::SavePoses));
+    let effects = run(&mut session, Command::Run(CommandId::ExportPoses));
     let Some(Effect::Download { file_name, bytes }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!(file_name, "photo-poses.json");
     assert_eq!(pinpose::formats::read_document(bytes).unwrap().pose_count(), 1);
-    let effects = run(&mut session, Command::Run(CommandId::SaveWorkspace));
+    let effects = run(&mut session, Command::Run(CommandId::ExportWorkspace));
     let Some(Effect::Download { file_name, .. }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!(file_name, "photo-workspace.zip");
 }

@@ -54,6 +54,10 @@ impl Desk {
         self.apply(Command::Drag { photo, object, camera_from_object });
     }
 
+    fn set_opacity(&mut self, overlay_opacity: f32) {
+        self.apply(Command::SetLook(crate::scene::Look { overlay_opacity, ..self.session.look() }));
+    }
+
     fn pose(&self) -> Pose {
         self.session.selected_annotation().unwrap().2.camera_from_object
     }
@@ -96,7 +100,7 @@ fn a_change_is_saved_within_a_second_also_while_changes_go_on() {
     for _ in 0..5 {
         desk.pass(200.0);
         let opacity = desk.session.look().overlay_opacity - 0.1;
-        desk.apply(Command::SetOverlayOpacity(opacity));
+        desk.set_opacity(opacity);
     }
     assert!(desk.stored_has(first));
 }
@@ -171,14 +175,14 @@ fn a_failed_save_is_told_once_and_tried_again_with_the_next_change() {
     let mut desk = Desk::new();
     desk.autosave.take_finished();
     desk.storage.fail_with(Some("the disk is full"));
-    desk.apply(Command::SetOverlayOpacity(0.5));
+    desk.set_opacity(0.5);
     desk.pass(1000.0);
     assert_eq!(desk.autosave.take_finished(), Some(Finished::Failed("the disk is full".to_owned())));
     assert_eq!(desk.autosave.state(&desk.session), Saving::Failed("the disk is full".to_owned()));
     desk.pass(5000.0);
     assert_eq!(desk.autosave.take_finished(), None);
     desk.storage.fail_with(None);
-    desk.apply(Command::SetOverlayOpacity(0.25));
+    desk.set_opacity(0.25);
     desk.pass(1000.0);
     assert_eq!(desk.autosave.take_finished(), Some(Finished::Saved { first: false }));
     assert_eq!(desk.autosave.state(&desk.session), Saving::Saved);
@@ -189,7 +193,8 @@ fn an_empty_scene_is_stored_only_where_one_was_stored_before() {
     let storage = Rc::new(MemoryStorage::default());
     let mut autosave = Autosave::new(storage.clone(), egui::Context::default(), SceneId::new(ID));
     let mut session = Session::default();
-    session.apply(Command::SetOverlayOpacity(0.5), 0.0).unwrap();
+    let look = crate::scene::Look { overlay_opacity: 0.5, ..session.look() };
+    session.apply(Command::SetLook(look), 0.0).unwrap();
     for now_ms in [0.0, 1000.0, 2000.0] {
         autosave.tick(&egui::Context::default(), &session, now_ms);
     }

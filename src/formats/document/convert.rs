@@ -3,16 +3,16 @@
 use glam::DMat4;
 
 use super::{
-    CameraOriginEntry, Conventions, Document, ObjectEntry, PhotoEntry, PoseEntry, ReferenceEntry,
+    CameraOriginEntry, Conventions, Document, MaskEntry, ObjectEntry, PhotoEntry, PoseEntry, ReferenceEntry,
     ReferencePoseEntry, SourceEntry, StateEntry, VERSION, ViewSettings,
 };
-use crate::formats::incoming::{IncomingReference, Look};
+use crate::formats::incoming::{IncomingReference, ObjectLook, PhotoLook};
 use crate::formats::{
     FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose,
 };
 use crate::math::{Distortion, Intrinsics, Pose};
 use crate::scene::{
-    Annotation, AnnotationState, CameraOrigin, Object, Photo, PoseSource, Rgb, Scene, Sha256,
+    Annotation, AnnotationState, CameraOrigin, Mask, MeshFrame, Object, Photo, PoseSource, Rgb, Scene, Sha256,
 };
 
 /// Which poses a document holds.
@@ -60,6 +60,26 @@ impl Document {
         self.photos.iter().map(|photo| photo.poses.len()).sum()
     }
 
+    /// The masks, to be found again by their content among the images that came with the document.
+    pub fn masks(&self) -> Vec<SavedMask> {
+        let of_photo = |(photo, entry): (usize, &PhotoEntry)| -> Vec<SavedMask> {
+            let position = |id: u32| self.objects.iter().position(|object| object.id == id);
+            let read = |mask: &MaskEntry| {
+                Some(SavedMask {
+                    photo,
+                    object: mask.object.and_then(position),
+                    sha256: mask.sha256.parse().ok()?,
+                    name: mask.name.clone(),
+                    color: read_color(&mask.color, "mask").ok()?,
+                    opacity: mask.opacity.clamp(0.0, 1.0),
+                    visible: mask.visible,
+                })
+            };
+            entry.masks.iter().filter_map(read).collect()
+        };
+        self.photos.iter().enumerate().flat_map(of_photo).collect()
+    }
+
     /// The position of the view's photo and object among the document's.
     pub fn view_positions(&self) -> (Option<usize>, Option<usize>) {
         let photo = self.photos.iter().position(|photo| Some(photo.id) == self.view.photo);
@@ -91,6 +111,12 @@ impl Document {
         Ok(IncomingPhoto {
             key: content_key(&photo.sha256, &photo.file, place)?,
             camera: Some(IncomingCamera::Exact(camera, photo.camera_origin.clone().into())),
+            look: Some(PhotoLook {
+                name: photo.name.clone(),
+                visible: photo.visible,
+                opacity: photo.opacity.clamp(0.0, 1.0),
+                locked: photo.locked,
+            }),
             poses: poses
                 .map(|(index, pose)| self.incoming_pose(pose, &format!("{place}.poses[{index}]")))
                 .collect::<Result<_, _>>()?,
@@ -141,6 +167,18 @@ impl Document {
     }
 }
 
+/// A mask of a document: which photo and object it belongs to by their positions, and how it was shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SavedMask {
+    pub photo: usize,
+    pub object: Option<usize>,
+    pub sha256: Sha256,
+    pub name: String,
+    pub color: Rgb,
+    pub opacity: f32,
+    pub visible: bool,
+}
+
 fn photo_entry(scene: &Scene, photo: &Photo, keep: Keep) -> PhotoEntry {
     let kept = |annotation: &Annotation| {
         keep == Keep::Everything
@@ -148,6 +186,7 @@ fn photo_entry(scene: &Scene, photo: &Photo, keep: Keep) -> PhotoEntry {
     };
     PhotoEntry {
         id: photo.id.0,
+        name: (photo.name != photo.asset.file_name).then(|| photo.name.clone()),
         file: photo.asset.file_name.clone(),
         sha256: photo.asset.sha256.to_string(),
         width: photo.camera.width,
@@ -155,11 +194,27 @@ fn photo_entry(scene: &Scene, photo: &Photo, keep: Keep) -> PhotoEntry {
         k: photo.camera.k_rows(),
         distortion: (!photo.camera.distortion.is_none()).then(|| photo.camera.distortion.to_array()),
         camera_origin: photo.camera_origin.clone().into(),
+        visible: photo.visible,
+        opacity: photo.opacity,
+        locked: photo.locked,
+        masks: scene.masks_of(photo.id).map(mask_entry).collect(),
         poses: scene
             .objects_in(photo.id)
             .filter(|(_, annotation)| kept(annotation))
             .map(|(object, annotation)| pose_entry(object, annotation))
             .collect(),
+    }
+}
+
+fn mask_entry(mask: &Mask) -> MaskEntry {
+    MaskEntry {
+        name: mask.name.clone(),
+        file: mask.asset.file_name.clone(),
+        sha256: mask.asset.sha256.to_string(),
+        object: mask.object.map(|object| object.0),
+        color: write_color(mask.color),
+        opacity: mask.opacity,
+        visible: mask.visible,
     }
 }
 
@@ -181,18 +236,22 @@ fn pose_entry(object: &Object, annotation: &Annotation) -> PoseEntry {
 }
 
 fn object_entry(object: &Object) -> ObjectEntry {
-    let Rgb([red, green, blue]) = object.color;
     ObjectEntry {
         id: object.id.0,
         name: object.name.clone(),
         mesh_file: object.mesh.file_name.clone(),
         mesh_sha256: object.mesh.sha256.to_string(),
         mesh_from_file: object.mesh_from_file.transpose().to_cols_array_2d(),
-        color: format!("#{red:02x}{green:02x}{blue:02x}"),
+        color: write_color(object.color),
         opacity: object.opacity,
         visible: object.visible,
         locked: object.locked,
+        link: object.link,
     }
+}
+
+fn write_color(Rgb([red, green, blue]): Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 fn reference_entry(reference: &crate::scene::Reference) -> ReferenceEntry {
@@ -207,23 +266,19 @@ fn reference_entry(reference: &crate::scene::Reference) -> ReferenceEntry {
 impl ObjectEntry {
     fn to_incoming(&self, place: &str) -> Result<IncomingObject, FormatError> {
         let mesh_from_file = DMat4::from_cols_array_2d(&self.mesh_from_file).transpose();
-        let determinant = mesh_from_file.determinant();
-        if !mesh_from_file.is_finite() || determinant.abs() < 1e-30 || mesh_from_file.row(3) != glam::DVec4::W
-        {
-            return Err(FormatError::at(
-                format!("{place}.mesh_from_file"),
-                "an invertible affine 4×4 expected",
-            ));
-        }
+        let mesh_from_file = MeshFrame::checked(mesh_from_file)
+            .map_err(|error| FormatError::at(format!("{place}.mesh_from_file"), error))?
+            .0;
         Ok(IncomingObject {
             key: content_key(&self.mesh_sha256, &self.mesh_file, place)?,
             mesh_from_file: Some(mesh_from_file),
-            look: Some(Look {
+            look: Some(ObjectLook {
                 name: self.name.clone(),
                 color: read_color(&self.color, place)?,
                 opacity: self.opacity.clamp(0.0, 1.0),
                 visible: self.visible,
                 locked: self.locked,
+                link: self.link,
             }),
         })
     }

@@ -1,0 +1,159 @@
+//! What can be changed of photos, objects and masks besides poses.
+
+use std::sync::Arc;
+
+use super::apply::Applied;
+use super::{BurstKey, CommandError, Effect, MaskChange, Notice, ObjectChange, PhotoChange, Session};
+use crate::math::Pose;
+use crate::scene::{Annotation, AnnotationState, MaskId, MeshFrame, Object, ObjectId, PhotoAsset, PhotoId};
+
+/// A duplicate is put beside its original by this part of its radius.
+const DUPLICATE_OFFSET: f64 = 0.5;
+
+impl Session {
+    pub(super) fn edit_photo(&mut self, id: PhotoId, change: PhotoChange, now_ms: f64) -> Applied {
+        self.scene.photo(id).ok_or(CommandError::NoPhoto(id))?;
+        let label = match change {
+            PhotoChange::Name(_) => "Rename photo",
+            PhotoChange::Visible(_) => "Show or hide photo",
+            PhotoChange::Opacity(_) => "Photo opacity",
+            PhotoChange::Locked(_) => "Lock or unlock photo",
+        };
+        let key = BurstKey { label, photo: Some(id), target: id.0 };
+        self.change_smoothly(key, now_ms, |scene| {
+            let Some(photo) = scene.photo_mut(id) else { return };
+            match change {
+                PhotoChange::Name(name) => photo.name = name,
+                PhotoChange::Visible(visible) => photo.visible = visible,
+                PhotoChange::Opacity(opacity) => photo.opacity = opacity.clamp(0.0, 1.0),
+                PhotoChange::Locked(locked) => photo.locked = locked,
+            }
+        })
+    }
+
+    /// Colour and name are one object's; what concerns how it is shown or held goes for all selected ones if it is among them.
+    pub(super) fn edit_object(&mut self, id: ObjectId, change: ObjectChange, now_ms: f64) -> Applied {
+        self.scene.object(id).ok_or(CommandError::NoObject(id))?;
+        let (label, for_all) = match &change {
+            ObjectChange::MeshFrame(frame) => return self.set_mesh_frame(id, *frame),
+            ObjectChange::Name(_) => ("Rename object", false),
+            ObjectChange::Color(_) => ("Object colour", false),
+            ObjectChange::Opacity(_) => ("Object opacity", true),
+            ObjectChange::Visible(_) => ("Show or hide object", true),
+            ObjectChange::Locked(_) => ("Lock or unlock object", true),
+        };
+        let ids = if for_all && self.is_selected(id) { self.selection() } else { vec![id] };
+        let key = BurstKey { label, photo: None, target: id.0 };
+        self.change_smoothly(key, now_ms, |scene| {
+            for object in scene.objects.iter_mut().filter(|object| ids.contains(&object.id)) {
+                change_object(object, &change);
+            }
+        })
+    }
+
+    pub(super) fn edit_mask(&mut self, id: MaskId, change: MaskChange, now_ms: f64) -> Applied {
+        let photo = self.scene.mask(id).ok_or(CommandError::NoMask(id))?.photo;
+        let label = match change {
+            MaskChange::Name(_) => "Rename mask",
+            MaskChange::Color(_) => "Mask colour",
+            MaskChange::Opacity(_) => "Mask opacity",
+            MaskChange::Visible(_) => "Show or hide mask",
+            MaskChange::Object(_) => "Mask's object",
+        };
+        let key = BurstKey { label, photo: Some(photo), target: id.0 };
+        self.change_smoothly(key, now_ms, |scene| {
+            let Some(mask) = scene.masks.iter_mut().find(|mask| mask.id == id) else { return };
+            match change {
+                MaskChange::Name(name) => mask.name = name,
+                MaskChange::Color(color) => mask.color = color,
+                MaskChange::Opacity(opacity) => mask.opacity = opacity.clamp(0.0, 1.0),
+                MaskChange::Visible(visible) => mask.visible = visible,
+                MaskChange::Object(object) => mask.object = object,
+            }
+        })
+    }
+
+    /// Mirrors or spaces an object's mesh; poses stay as they are.
+    fn set_mesh_frame(&mut self, id: ObjectId, frame: MeshFrame) -> Applied {
+        let object = self.scene.object(id).ok_or(CommandError::NoObject(id))?;
+        let frame = MeshFrame::checked(frame.0)?;
+        let mesh = object
+            .mesh
+            .with_mesh_from_file(object.mesh_from_file, frame.0)
+            .map_err(|error| CommandError::Failed(error.to_string()))?;
+        let mesh = Arc::new(mesh);
+        self.change("Mirror or space mesh", |scene| {
+            if let Some(object) = scene.object_mut(id) {
+                object.mesh = mesh;
+                object.mesh_from_file = frame.0;
+            }
+        })
+    }
+
+    pub(super) fn import_masks(&mut self, images: &[Arc<PhotoAsset>]) -> Applied {
+        let photo = self.photo().ok_or(CommandError::NotAvailable("Import mask", "no photo is open"))?;
+        let (id, size) = (photo.id, (photo.asset.width, photo.asset.height));
+        let object = self.selected_annotation().map(|(_, object, _)| object);
+        let (fitting, others): (Vec<_>, Vec<_>) =
+            images.iter().partition(|image| (image.width, image.height) == size);
+        self.change("Import masks", |scene| {
+            for image in fitting {
+                scene.add_mask(id, object, image.clone());
+            }
+        })?;
+        let refused = |image: &Arc<PhotoAsset>| {
+            Effect::Notify(Notice::error(format!(
+                "{}: a mask of the photo's size, {} × {} pixels, expected; this has {} × {}",
+                image.file_name, size.0, size.1, image.width, image.height
+            )))
+        };
+        Ok(others.into_iter().map(refused).collect())
+    }
+
+    /// Another object of the same mesh, beside the selected one, in the photo that is shown.
+    pub(super) fn duplicate_selected(&mut self, now_ms: f64) -> Applied {
+        let Some((photo, object, annotation)) = self.selected_annotation() else { return Ok(Vec::new()) };
+        let radius_mm = self.scene.object(object).map_or(0.0, |object| object.mesh.mesh.sphere().radius);
+        let pose: Pose =
+            annotation.camera_from_object.translated(glam::DVec3::X * radius_mm * DUPLICATE_OFFSET);
+        let beside = Annotation {
+            camera_from_object: pose,
+            state: AnnotationState::Carried,
+            changed_at_ms: now_ms,
+            ..annotation.clone()
+        };
+        let mut copy = None;
+        self.change("Duplicate object", |scene| {
+            copy = scene.duplicate_object(object);
+            if let Some(copy) = copy {
+                scene.annotations.insert((photo, copy), beside);
+            }
+        })?;
+        self.select(copy)
+    }
+
+    pub(super) fn link_selected(&mut self) -> Applied {
+        let selection = self.selection();
+        self.change("Link objects", |scene| scene.link(&selection))
+    }
+
+    pub(super) fn unlink_selected(&mut self) -> Applied {
+        let selection = self.selection();
+        self.change("Unlink objects", |scene| {
+            for object in scene.objects.iter_mut().filter(|object| selection.contains(&object.id)) {
+                object.link = None;
+            }
+        })
+    }
+}
+
+fn change_object(object: &mut Object, change: &ObjectChange) {
+    match change {
+        ObjectChange::Name(name) => object.name.clone_from(name),
+        ObjectChange::Color(color) => object.color = *color,
+        ObjectChange::Opacity(opacity) => object.opacity = opacity.clamp(0.0, 1.0),
+        ObjectChange::Visible(visible) => object.visible = *visible,
+        ObjectChange::Locked(locked) => object.locked = *locked,
+        ObjectChange::MeshFrame(_) => {}
+    }
+}
