@@ -62,6 +62,8 @@ pub struct Session {
 struct Gesture {
     label: &'static str,
     before: Snapshot,
+    /// The revision of `before`.
+    revision: u64,
 }
 
 #[derive(Debug)]
@@ -154,22 +156,28 @@ impl Session {
         self.revision
     }
 
+    /// The revision of [`Self::settled_scene`].
+    pub fn settled_revision(&self) -> u64 {
+        self.gesture.as_ref().map_or(self.revision, |gesture| gesture.revision)
+    }
+
     /// The session as our own document.
     pub fn document(&self, keep: Keep) -> Document {
-        self.document_of(&self.scene, keep)
+        Document::from_scene(&self.scene, &self.view_settings(), keep)
     }
 
     /// The same without the gesture that is under way.
     pub fn settled_document(&self, keep: Keep) -> Document {
-        self.document_of(self.settled_scene(), keep)
+        Document::from_scene(self.settled_scene(), &self.view_settings(), keep)
     }
 
-    fn document_of(&self, scene: &Scene, keep: Keep) -> Document {
+    /// What is on screen, for a document.
+    pub fn view_settings(&self) -> ViewSettings {
         let mut view = ViewSettings::of_look(&self.look);
         view.photo = self.photo.map(|id| id.0);
         view.selected = self.selected.map(|id| id.0);
         view.panes = self.panes.arrangement.name().to_owned();
         view.image_distance_mm = self.panes.image_distance_mm;
-        Document::from_scene(scene, &view, keep)
+        view
     }
 }

@@ -13,8 +13,11 @@ mod layers;
 mod linemod;
 mod mesh_corpus;
 mod panels;
+mod scenes;
+mod scenes_dialog;
 mod scripts;
 mod shaders;
+mod storage;
 mod support;
 
 use support::data_folder;

@@ -198,8 +198,28 @@ async function offerSavedPoses(save, note) {
   };
 }
 
-// The autosaved document's JSON, read without the wasm, which is not to be trusted any more.
-function readSavedPoses() {
+// The last open scene's document as JSON, read without the wasm, which is not to be trusted any more. The stores are
+// described in src/platform/web/indexed_db.rs.
+async function readSavedPoses() {
+  const database = await openDatabase();
+  if (!database?.objectStoreNames.contains('documents')) return null;
+  const read = (store, key) => {
+    if (!database.objectStoreNames.contains(store)) return undefined;
+    return answered(database.transaction(store).objectStore(store).get(key));
+  };
+  const candidates = parameters.has('example')
+    ? ['example']
+    : [ofThisTab('pinpose last_open'), await read('state', 'last_open'), 'current'];
+  for (const id of candidates.filter(Boolean)) {
+    const document = await read('documents', id);
+    if (!document) continue;
+    const scene = await read('scenes', id);
+    return newerJournal(id, scene?.changedAtMs ?? 0) ?? document.json;
+  }
+  return null;
+}
+
+function openDatabase() {
   return new Promise((resolve, reject) => {
     const opening = indexedDB.open('pinpose');
     // There was no database. Leave it so: the app makes it with the stores that it needs.
@@ -208,14 +228,34 @@ function readSavedPoses() {
       resolve(null);
     };
     opening.onerror = () => reject(opening.error);
-    opening.onsuccess = () => {
-      const database = opening.result;
-      if (!database.objectStoreNames.contains('documents')) return resolve(null);
-      const reading = database.transaction('documents').objectStore('documents').get('current');
-      reading.onerror = () => reject(reading.error);
-      reading.onsuccess = () => resolve(reading.result?.json ?? null);
-    };
+    opening.onsuccess = () => resolve(opening.result);
   });
+}
+
+function answered(request) {
+  return new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = () => reject(request.error);
+  });
+}
+
+function ofThisTab(key) {
+  try {
+    return sessionStorage.getItem(key);
+  } catch {
+    // The user has turned this storage off.
+    return null;
+  }
+}
+
+// What was put aside when the page was hidden, if it is newer than what is stored: its time, a line break, the document.
+function newerJournal(id, changedAtMs) {
+  try {
+    const [, time, json] = localStorage.getItem(`pinpose journal ${id}`)?.match(/^([^\n]*)\n([^]*)$/) ?? [];
+    return Number(time) > changedAtMs ? json : undefined;
+  } catch {
+    return undefined;
+  }
 }
 
 // Only once the page runs: keeping it for offline use must not compete with loading it.

@@ -6,6 +6,7 @@ mod masks;
 mod path;
 mod pixels;
 mod safety;
+mod scenes;
 mod startup;
 mod view;
 
@@ -61,6 +62,10 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "bad-calls", bad_input::bad_calls),
     Flow::on(WEBGL, "offline", safety::offline),
     Flow::on(WEBGL, "crash", safety::crash),
+    Flow::on(WEBGL, "scenes", scenes::scenes),
+    Flow::on(WEBGL, "scenes-mid-drag", scenes::mid_drag),
+    Flow::on(WEBGL, "scenes-version-1", scenes::version_1),
+    Flow::on(WEBGL, "scenes-newer-version", scenes::newer_version),
 ];
 
 /// The sample that most flows use.

@@ -60,15 +60,17 @@ fn save_from_crash_screen(page: &mut Page) -> anyhow::Result<()> {
     page.click((x, y), Button::Left, &[])
 }
 
-/// Saves a document where autosave does, whether or not the program has made the place for it yet.
+/// Saves a document where autosave does, as a scene that was open last.
 const SAVE_POSES: &str = r#"new Promise((resolve, reject) => {
-    const opening = indexedDB.open('pinpose', 1);
-    opening.onupgradeneeded = () => opening.result.createObjectStore('documents');
+    const opening = indexedDB.open('pinpose');
     opening.onerror = () => reject(opening.error);
     opening.onsuccess = () => {
-        const saving = opening.result.transaction('documents', 'readwrite');
-        saving.objectStore('documents').put({ json: '{"saved":1}' }, 'current');
-        saving.oncomplete = () => resolve(true);
+        const saving = opening.result.transaction(['documents', 'scenes', 'state'], 'readwrite');
+        saving.objectStore('documents').put({ json: '{"saved":0}', assets: [] }, 'current');
+        saving.objectStore('documents').put({ json: '{"saved":1}', assets: [] }, 'scene-1');
+        saving.objectStore('scenes').put({ name: 'Bench', changedAtMs: 1, assets: [] }, 'scene-1');
+        saving.objectStore('state').put('scene-1', 'last_open');
+        saving.oncomplete = () => { opening.result.close(); resolve(true); };
         saving.onerror = () => reject(saving.error);
     };
 })"#;

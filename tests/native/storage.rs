@@ -1,0 +1,181 @@
+//! Stores of scenes: in memory and in a folder, which have to do the same.
+
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use pinpose::platform::{
+    FolderStorage, Journal, MemoryStorage, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, Storage,
+    StorageFuture, keep_preferences_in_memory, read_preference, write_preference,
+};
+
+fn now<T>(future: StorageFuture<T>) -> T {
+    pollster::block_on(future).unwrap()
+}
+
+fn id(text: &str) -> SceneId {
+    SceneId::new(text)
+}
+
+fn asset(key: &str, bytes: &[u8]) -> SavedAsset {
+    SavedAsset { key: key.to_owned(), file_name: format!("{key} of mine.png"), bytes: Arc::from(bytes) }
+}
+
+fn saved(name: &str, changed_at_ms: f64, assets: &[SavedAsset]) -> Saved {
+    let heading = SceneHeading {
+        name: name.to_owned(),
+        subject: "photo".to_owned(),
+        changed_at_ms,
+        photo_count: 3,
+        object_count: 2,
+    };
+    Saved { heading, json: format!("{{\n\n\"of\": \"{name}\"}}"), assets: assets.to_vec() }
+}
+
+/// A folder that is gone when the test is over.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("pinpose-{}-{name}", std::process::id()));
+        std::fs::remove_dir_all(&folder).ok();
+        Self(folder)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn titles(storage: &dyn Storage) -> Vec<String> {
+    now(storage.list()).iter().map(|scene| scene.heading.title().to_owned()).collect()
+}
+
+/// Runs a test on both kinds of store.
+fn on_both(name: &str, test: impl Fn(&dyn Storage)) {
+    test(&MemoryStorage::default());
+    let folder = Folder::new(name);
+    test(&FolderStorage::new(folder.0.clone()));
+}
+
+#[test]
+fn scenes_come_back_as_they_were_saved() {
+    on_both("back", |storage| {
+        assert_eq!(now(storage.list()), []);
+        assert_eq!(now(storage.load(&id("a"))), None);
+        assert_eq!(now(storage.last_open()), None);
+        let bench = saved("Lab bench", 1000.5, &[asset("aa", b"photo"), asset("bb", b"mesh")]);
+        let table = saved("", 2000.0, &[asset("aa", b"photo")]);
+        assert_eq!(now(storage.save(&id("a"), bench.clone(), None)), SaveOutcome::Saved);
+        assert_eq!(now(storage.save(&id("b"), table.clone(), None)), SaveOutcome::Saved);
+        assert_eq!(now(storage.load(&id("a"))), Some(bench.clone()));
+        assert_eq!(now(storage.load(&id("b"))), Some(table));
+        // The newest first; a scene without a name is called by what is in it.
+        assert_eq!(titles(storage), ["photo", "Lab bench"]);
+        assert_eq!(now(storage.list())[1].bytes, bench.bytes());
+        now(storage.set_last_open(&id("a")));
+        assert_eq!(now(storage.last_open()), Some(id("a")));
+    });
+}
+
+#[test]
+fn scenes_are_renamed_copied_and_deleted() {
+    on_both("rename", |storage| {
+        let bench = saved("Lab bench", 1000.0, &[asset("aa", b"photo")]);
+        now(storage.save(&id("a"), bench.clone(), None));
+        now(storage.rename(&id("a"), "Lab\nbench 2"));
+        now(storage.duplicate(&id("a"), &id("b"), "Copy"));
+        assert_eq!(now(storage.load(&id("b"))).unwrap().assets, bench.assets);
+        assert_eq!(now(storage.load(&id("b"))).unwrap().json, bench.json);
+        now(storage.delete(&id("a")));
+        assert_eq!(titles(storage), ["Copy"]);
+        // The photo of the copy is still there.
+        assert_eq!(now(storage.load(&id("b"))).unwrap().assets, bench.assets);
+        // What is not there can be renamed, copied and deleted without harm.
+        now(storage.rename(&id("gone"), "x"));
+        now(storage.duplicate(&id("gone"), &id("c"), "x"));
+        now(storage.delete(&id("gone")));
+        assert_eq!(titles(storage), ["Copy"]);
+    });
+}
+
+#[test]
+fn assets_are_stored_once_and_go_with_the_last_scene_that_needs_them() {
+    let folder = Folder::new("assets");
+    let storage = FolderStorage::new(folder.0.clone());
+    let count = || std::fs::read_dir(folder.0.join("assets")).unwrap().count();
+    let memory = Rc::new(MemoryStorage::default());
+    let expect = |expected: usize| assert_eq!((count(), memory.asset_count()), (expected, expected));
+    let save = |text: &str, saved: Saved, expected: usize| {
+        now(storage.save(&id(text), saved.clone(), None));
+        now(memory.save(&id(text), saved, None));
+        expect(expected);
+    };
+    let delete = |text: &str, expected: usize| {
+        now(storage.delete(&id(text)));
+        now(memory.delete(&id(text)));
+        expect(expected);
+    };
+    let (photo, mesh) = (asset("aa", b"photo"), asset("bb", b"mesh"));
+    // A mesh that is in the scene twice is stored once.
+    save("a", saved("A", 1.0, &[photo.clone(), mesh.clone(), mesh]), 2);
+    save("b", saved("B", 2.0, std::slice::from_ref(&photo)), 2);
+    // Saved without its mesh, which nobody else has.
+    save("a", saved("A", 3.0, &[photo]), 1);
+    delete("a", 1);
+    delete("b", 0);
+    assert_eq!(now(storage.usage()).used_bytes, 0);
+}
+
+#[test]
+fn what_another_window_has_saved_is_not_written_over() {
+    on_both("other", |storage| {
+        now(storage.save(&id("a"), saved("mine", 1000.0, &[]), None));
+        now(storage.save(&id("a"), saved("theirs", 1500.0, &[]), Some(1000.0)));
+        let outcome = now(storage.save(&id("a"), saved("mine", 2000.0, &[]), Some(1000.0)));
+        assert_eq!(outcome, SaveOutcome::ChangedElsewhere);
+        assert_eq!(titles(storage), ["theirs"]);
+        // A scene that was deleted there is work here.
+        now(storage.delete(&id("a")));
+        let outcome = now(storage.save(&id("a"), saved("mine", 2000.0, &[]), Some(1000.0)));
+        assert_eq!(outcome, SaveOutcome::Saved);
+    });
+}
+
+#[test]
+fn a_journal_is_kept_by_scene_and_goes_with_it() {
+    on_both("journal", |storage| {
+        let journal = Journal { changed_at_ms: 1_700_000_000_000.125, json: "{\n}".to_owned() };
+        now(storage.save(&id("a"), saved("A", 1.0, &[]), None));
+        storage.write_journal(&id("a"), &journal);
+        assert_eq!(storage.read_journal(&id("a")), Some(journal));
+        assert_eq!(storage.read_journal(&id("b")), None);
+        now(storage.delete(&id("a")));
+        assert_eq!(storage.read_journal(&id("a")), None);
+    });
+}
+
+#[test]
+fn a_damaged_file_is_told_in_words_and_a_foreign_name_stays_in_the_folder() {
+    let folder = Folder::new("damaged");
+    let storage = FolderStorage::new(folder.0.join("store"));
+    now(storage.save(&id("../escaped"), saved("A", 1.0, &[]), None));
+    assert!(folder.0.join("store/scenes").read_dir().unwrap().count() == 1);
+    assert!(!folder.0.join("escaped.scene").exists());
+    std::fs::write(folder.0.join("store/scenes/b.scene"), "photos many\n\n{}").unwrap();
+    let error = pollster::block_on(storage.load(&id("b"))).unwrap_err();
+    assert!(
+        error.starts_with("the saved scene cannot be read: ") && error.contains("photos many"),
+        "{error}"
+    );
+}
+
+#[test]
+fn preferences_are_apart_from_scenes() {
+    keep_preferences_in_memory();
+    assert_eq!(read_preference("theme"), None);
+    write_preference("theme", "light");
+    assert_eq!(read_preference("theme").as_deref(), Some("light"));
+}
