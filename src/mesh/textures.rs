@@ -1,5 +1,6 @@
 //! Texture images on their way into a mesh's paint: found, decoded and shrunk within bounds.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -11,6 +12,8 @@ pub const MAX_TEXTURE_SIDE_PX: u32 = 4096;
 
 /// So many pixels are decoded for one mesh; what does not fit is left out.
 const MAX_PIXELS_OF_ALL: u64 = 2 * MAX_PIXELS;
+/// So many missing files are named.
+const MOST_NAMED: usize = 5;
 /// Each texture costs a draw call.
 const MAX_TEXTURES: usize = 256;
 
@@ -54,14 +57,15 @@ impl<'a> Textures<'a> {
         texture
     }
 
-    /// A texture within the mesh's own file. `what` names it in a message, and is the same for the same image.
-    pub fn embedded(&mut self, what: &str, bytes: &[u8]) -> Option<u32> {
+    /// A texture within the mesh's own file. `what` names it in a message, and is the same for the same image, whose
+    /// bytes are asked for once.
+    pub fn embedded<'b>(&mut self, what: &str, bytes: impl FnOnce() -> Cow<'b, [u8]>) -> Option<u32> {
         // No file is named so: a key has no slashes.
         let key = format!("/{what}");
         if let Some(known) = self.known.get(&key) {
             return *known;
         }
-        let texture = self.decode(what, bytes);
+        let texture = self.decode(what, &bytes());
         self.known.insert(key, texture);
         texture
     }
@@ -73,7 +77,11 @@ impl<'a> Textures<'a> {
     /// The textures by their numbers, and what the user should know.
     pub fn finish(mut self) -> (Vec<Arc<Pixels>>, Vec<String>) {
         if !self.missing.is_empty() {
-            let (count, names) = (self.missing.len(), self.missing.join(", "));
+            let count = self.missing.len();
+            let mut names = self.missing.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
+            if count > MOST_NAMED {
+                names += &format!(" and {} more", count - MOST_NAMED);
+            }
             let (files, are) = if count == 1 { ("file", "is") } else { ("files", "are") };
             self.warnings.push(format!(
                 "The texture {files} {names} did not come with the mesh and {are} left out; load them together."
@@ -136,7 +144,7 @@ mod tests {
         assert_eq!(textures.in_file("maps/Wide.png"), Some(0));
         assert_eq!(textures.in_file("wide.PNG"), Some(0));
         assert_eq!((textures.in_file("a.png"), textures.in_file("a.png")), (None, None));
-        assert_eq!(textures.embedded("image 0", b"nothing"), None);
+        assert_eq!(textures.embedded("image 0", || b"nothing".into()), None);
         let (textures, warnings) = textures.finish();
         assert_eq!(
             (textures.len(), textures[0].width, &textures[0].rgba[..4]),

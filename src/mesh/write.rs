@@ -1,5 +1,7 @@
 //! A mesh as a file, for taking one along whose unit, axes or spacing were changed here.
 
+use glam::Vec3;
+
 use super::Mesh;
 
 /// Binary little-endian PLY in millimetres: positions, normals and vertex colours where the mesh has them, and triangles.
@@ -9,11 +11,8 @@ pub fn write_ply(mesh: &Mesh) -> Vec<u8> {
     let mut bytes = header(mesh).into_bytes();
     bytes.reserve(vertices * 28 + mesh.triangles().len() * 13);
     for vertex in 0..vertices {
-        put_floats(&mut bytes, mesh.positions_mm().get(vertex).map(|position| position.to_array()));
-        put_floats(
-            &mut bytes,
-            mesh.normals().and_then(|normals| normals.get(vertex)).map(|normal| normal.to_array()),
-        );
+        put_floats(&mut bytes, mesh.positions_mm().get(vertex).map(Vec3::to_array));
+        put_floats(&mut bytes, mesh.normals().and_then(|normals| normals.get(vertex)).map(Vec3::to_array));
         bytes.extend(mesh.colors().and_then(|colors| colors.get(vertex)).into_iter().flatten());
     }
     for triangle in mesh.triangles() {
@@ -45,7 +44,7 @@ fn put_floats(bytes: &mut Vec<u8>, values: Option<[f32; 3]>) {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DAffine3, DMat3, DVec3, Vec3};
+    use glam::{DAffine3, DMat3, DVec3};
 
     use super::*;
     use crate::mesh::test_shapes::cube;

@@ -121,8 +121,10 @@ impl MeshAsset {
 }
 
 impl PartialEq for MeshAsset {
-    /// The content decides: the mesh follows from the bytes.
+    /// The content decides: the mesh follows from the bytes, and its looks from how many companions were there.
     fn eq(&self, other: &Self) -> bool {
-        self.sha256 == other.sha256 && self.file_name == other.file_name
+        self.sha256 == other.sha256
+            && self.file_name == other.file_name
+            && self.companions.len() == other.companions.len()
     }
 }

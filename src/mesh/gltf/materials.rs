@@ -1,5 +1,6 @@
 //! Base colours and base colour textures of a glTF's materials.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use ::gltf::json;
@@ -115,19 +116,18 @@ impl<'a> Look<'a> {
         // An image that only an extension names has no number here.
         let image_number = gltf.root.textures.get(number)?.source.value();
         let what = format!("image {image_number}");
-        let Some(image) = gltf.root.images.get(image_number) else {
-            return self.textures.embedded(&what, &[]);
-        };
-        match (&image.buffer_view, &image.uri) {
-            (Some(view), _) => {
-                let bytes = view_bytes(gltf, view.value()).map_or(&[][..], |(bytes, _)| bytes);
-                self.textures.embedded(&what, bytes)
+        let image = gltf.root.images.get(image_number);
+        match image.map(|image| (&image.buffer_view, &image.uri)) {
+            Some((Some(view), _)) => self.textures.embedded(&what, || {
+                Cow::Borrowed(view_bytes(gltf, view.value()).map_or(&[][..], |(bytes, _)| bytes))
+            }),
+            Some((None, Some(uri))) if !uri.starts_with("data:") => {
+                self.textures.in_file(&percent_decoded(uri))
             }
-            (None, Some(uri)) if uri.starts_with("data:") => {
-                self.textures.embedded(&what, &data_uri(uri).unwrap_or_default())
+            Some((None, Some(uri))) => {
+                self.textures.embedded(&what, || Cow::Owned(data_uri(uri).unwrap_or_default()))
             }
-            (None, Some(uri)) => self.textures.in_file(&percent_decoded(uri)),
-            (None, None) => self.textures.embedded(&what, &[]),
+            Some((None, None)) | None => self.textures.embedded(&what, Cow::default),
         }
     }
 }

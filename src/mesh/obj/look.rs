@@ -1,6 +1,7 @@
 //! From an OBJ's material names and texture coordinates to a mesh's paint.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::Vec2;
 
@@ -13,6 +14,9 @@ use crate::mesh::{Material, Paint};
 
 /// No texture coordinate at a corner.
 pub(super) const NO_UV: u32 = u32::MAX;
+
+/// So many lines and words are looked up as libraries.
+const MOST_LIBRARIES: usize = 64;
 
 /// What the lines of a file say of materials and texture coordinates.
 #[derive(Debug, Default)]
@@ -38,7 +42,8 @@ impl Look {
 
     pub fn add_library(&mut self, names: &[u8]) {
         // Some programs name the library before every group.
-        if !self.libraries.iter().any(|known| known == names) && !names.is_empty() {
+        let is_known = self.libraries.iter().any(|known| known == names);
+        if !is_known && !names.is_empty() && self.libraries.len() < MOST_LIBRARIES {
             self.libraries.push(names.to_vec());
         }
     }
@@ -105,17 +110,14 @@ impl Look {
 
     /// All libraries as one; `None`, and a warning, where none is there.
     fn find_library(&self, source: &Source<'_>, warnings: &mut Vec<String>) -> Option<Library> {
+        let found = self.found_libraries(source);
         let mut whole = Library::default();
-        let mut is_found = false;
-        for names in &self.libraries {
-            for (_, bytes) in find_libraries(names, source) {
-                is_found = true;
-                for (name, material) in material::parse(&bytes).materials {
-                    whole.materials.entry(name).or_insert(material);
-                }
+        for bytes in found.values() {
+            for (name, material) in material::parse(bytes).materials {
+                whole.materials.entry(name).or_insert(material);
             }
         }
-        if is_found {
+        if !found.is_empty() {
             return Some(whole);
         }
         let names = self.libraries.iter().map(|names| shown(names)).collect::<Vec<_>>().join(", ");
@@ -135,22 +137,32 @@ impl Look {
 
     /// The names of the files that the look comes from, and of every image beside.
     pub fn companion_names(&self, source: &Source<'_>) -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
-        let mut libraries = Vec::new();
-        for line in &self.libraries {
-            names.extend(candidates(line));
-            libraries.extend(find_libraries(line, source));
-        }
-        let renamed = renamed_library(source.file_name);
+        let mut names: Vec<String> = self.libraries.iter().flat_map(|line| candidates(line)).collect();
+        let mut libraries = self.found_libraries(source);
+        let renamed = companion_key(&renamed_library(source.file_name));
         if libraries.is_empty()
             && !self.libraries.is_empty()
-            && let Some(bytes) = (source.find)(&companion_key(&renamed))
+            && let Some(bytes) = (source.find)(&renamed)
         {
             names.push(renamed.clone());
-            libraries.push((renamed, bytes));
+            libraries.insert(renamed, bytes);
         }
-        names.extend(libraries.iter().flat_map(|(_, bytes)| material::parse(bytes).images));
+        names.extend(libraries.values().flat_map(|bytes| material::parse(bytes).images));
         names
+    }
+
+    /// The libraries that are at hand, by their keys.
+    fn found_libraries(&self, source: &Source<'_>) -> BTreeMap<String, Arc<[u8]>> {
+        let mut found = BTreeMap::new();
+        for line in &self.libraries {
+            let mut keys = candidates(line).into_iter().map(|name| companion_key(&name));
+            let lookup = |key: String| (source.find)(&key).map(|bytes| (key, bytes));
+            match keys.next().and_then(lookup) {
+                Some(whole) => found.extend([whole]),
+                None => found.extend(keys.filter_map(lookup)),
+            }
+        }
+        found
     }
 }
 
@@ -162,14 +174,5 @@ fn renamed_library(mesh_name: &str) -> String {
 fn candidates(names: &[u8]) -> Vec<String> {
     let whole = std::iter::once(names);
     let each = words(names).filter(|word| word.len() < names.len());
-    whole.chain(each).map(|name| String::from_utf8_lossy(name).into_owned()).collect()
-}
-
-fn find_libraries(names: &[u8], source: &Source<'_>) -> Vec<(String, std::sync::Arc<[u8]>)> {
-    let found = |name: String| (source.find)(&companion_key(&name)).map(|bytes| (name, bytes));
-    let mut candidates = candidates(names).into_iter();
-    match candidates.next().and_then(found) {
-        Some(whole) => vec![whole],
-        None => candidates.filter_map(found).collect(),
-    }
+    whole.chain(each.take(MOST_LIBRARIES)).map(|name| String::from_utf8_lossy(name).into_owned()).collect()
 }

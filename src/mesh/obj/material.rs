@@ -71,9 +71,9 @@ pub(super) fn keyword_and_rest(line: &[u8]) -> Option<(Vec<u8>, &[u8])> {
 /// One number is a grey; the format's spectral colours are not read.
 fn color(rest: &[u8]) -> Option<[f64; 3]> {
     let numbers: Option<Vec<f64>> = words(rest).take(3).map(parse_number).collect();
-    match numbers?.as_slice() {
-        &[grey] => Some([grey; 3]),
-        &[r, g, b] => Some([r, g, b]),
+    match *numbers?.as_slice() {
+        [grey] => Some([grey; 3]),
+        [r, g, b] => Some([r, g, b]),
         _ => None,
     }
 }
