@@ -3,6 +3,7 @@
 //! This room knows nothing of photos, poses in a scene, or the GPU. Nothing here reads a file: loaders take bytes.
 
 mod bvh;
+mod edges;
 mod error;
 mod gltf;
 mod load;
@@ -22,6 +23,7 @@ use glam::{DAffine3, DVec3, Vec3};
 use crate::math::{BoundingSphere, Bounds};
 
 pub use bvh::Bvh;
+pub use edges::{MeshEdges, mesh_edges};
 pub use error::{Format, MeshError, Place};
 pub use load::{LoadedMesh, load};
 pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};
