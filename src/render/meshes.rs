@@ -8,6 +8,7 @@ use wgpu::util::DeviceExt;
 
 use super::lines::EdgeInstance;
 use super::surfaces::Surfaces;
+use super::uniforms::draws_edges;
 use super::{Gpu, Usage, ViewSlot};
 use crate::mesh::{Mesh, ShadingGroup, ShadingVertex, mesh_edges, shading_vertices};
 use crate::photo::Pixels;
@@ -103,7 +104,7 @@ impl Meshes {
         });
         let kept = &mut self.kept[position];
         kept.last_pictures[slot as usize] = picture;
-        if matches!(mode, OverlayMode::Edges | OverlayMode::Wireframe) {
+        if draws_edges(mode) {
             kept.buffers.edges.get_or_insert_with(|| upload_edges(gpu, usage, &mesh.mesh));
         }
     }

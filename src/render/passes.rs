@@ -6,6 +6,7 @@ use super::pipelines::{PipelineKind, Pipelines};
 use super::plane::PLANE_INDEX_COUNT;
 use super::surfaces::Surfaces;
 use super::targets::Targets;
+use super::uniforms::draws_edges;
 use super::view::View;
 use super::{Item, Picture, Usage};
 use crate::scene::OverlayMode;
@@ -61,7 +62,7 @@ impl Passes<'_> {
         let picture = self.picture;
         if picture.fills() {
             match picture.look.mode {
-                OverlayMode::Edges | OverlayMode::Wireframe => self.draw_mesh_edges(pass),
+                mode if draws_edges(mode) => self.draw_mesh_edges(pass),
                 mode if picture.look.x_ray => {
                     let kinds = [PipelineKind::Depth, fill_kind(mode, true)];
                     self.draw_in_order(pass, Order::NearestLast, &kinds);

@@ -344,7 +344,7 @@ impl Recipe {
             }
             Kind::PlaneBehind => plane,
             Kind::LinesBehind => lines,
-            Kind::PlaneBefore => Self { depth: Some(DepthUse::SEEN), blend: Some(ATOP), ..plane },
+            Kind::PlaneBefore => Self { blend: Some(ATOP), ..plane },
             Kind::LinesBefore => Self { blend: Some(ATOP), ..lines },
             Kind::LinesInFront => Self { depth: Some(DepthUse::IGNORED), ..lines },
             Kind::Compose | Kind::ComposeOnScreen => compose,

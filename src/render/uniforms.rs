@@ -131,10 +131,12 @@ impl ObjectUniform {
         let center = bounds.center().as_vec3();
         let look = &picture.look;
         // A difference is taken of the meshes' own colours.
-        let opacity = match (look.difference, look.x_ray) {
-            (true, _) => 1.0,
-            (false, true) => item.opacity * X_RAY_OPACITY,
-            (false, false) => item.opacity,
+        let opacity = if look.difference {
+            1.0
+        } else if look.x_ray && !draws_edges(look.mode) {
+            item.opacity * X_RAY_OPACITY
+        } else {
+            item.opacity
         };
         Self {
             eye_from_object: matrix(&picture.eye_from_object(item)),
@@ -153,6 +155,11 @@ impl ObjectUniform {
             ..Self::zeroed()
         }
     }
+}
+
+/// Whether a mode draws a mesh's edges.
+pub fn draws_edges(mode: OverlayMode) -> bool {
+    matches!(mode, OverlayMode::Edges | OverlayMode::Wireframe)
 }
 
 fn matrix(pose: &Pose) -> [[f32; 4]; 4] {
