@@ -4,6 +4,7 @@
 
 mod bvh;
 mod companions;
+mod edges;
 mod error;
 mod gltf;
 mod load;
@@ -28,6 +29,7 @@ use crate::math::{BoundingSphere, Bounds};
 
 pub use bvh::Bvh;
 pub use companions::{FindCompanion, companion_key, companion_names, no_companions};
+pub use edges::{MeshEdges, mesh_edges};
 pub use error::{Format, MeshError, Place};
 pub use load::{LoadedMesh, load};
 pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};

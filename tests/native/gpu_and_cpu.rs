@@ -9,8 +9,8 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 use pinpose::math::{Distortion, ImageRect, Intrinsics, Pose};
 use pinpose::mesh::{Bvh, Mesh, MeshData};
 use pinpose::raster::{Mask, PixelRegion, RasterItem, rasterize};
-use pinpose::render::{Item, Layer, Picture, Renderer};
-use pinpose::scene::{MeshAsset, Rgb, Sha256};
+use pinpose::render::{Item, Layer, LineWidths, Picture, Renderer};
+use pinpose::scene::{Look, MeshAsset, Rgb, Sha256};
 
 use crate::support::{linemod_session, renderer};
 
@@ -78,7 +78,7 @@ fn compare(renderer: &mut Renderer, camera: &Intrinsics, mesh: &Arc<MeshAsset>, 
     drawn.iou(&expected).unwrap()
 }
 
-fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose) -> Picture {
+pub fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose) -> Picture {
     let item =
         Item { mesh, camera_from_object: pose, color: Rgb([255; 3]), opacity: 1.0, id: 1, selected: false };
     Picture {
@@ -87,9 +87,11 @@ fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose
         photo: None,
         items: vec![item],
         ghosts: Vec::new(),
-        overlay_opacity: 1.0,
-        outline: None,
-        ghost_width_px: 0.0,
+        eye_from_camera: Pose::IDENTITY,
+        masks: None,
+        look: Look { outline: false, ..Look::default() },
+        widths: LineWidths::for_scale(1.0),
+        surroundings: None,
         background: Rgb([0; 3]),
     }
 }
@@ -131,7 +133,7 @@ fn small_discs_are_drawn_where_their_centres_project() {
 }
 
 /// A disc of so many millimetres about the origin, facing the camera.
-fn disc(radius_mm: f32) -> Arc<MeshAsset> {
+pub fn disc(radius_mm: f32) -> Arc<MeshAsset> {
     let count = 96_u32;
     let mut positions_mm = vec![Vec3::ZERO];
     positions_mm.extend((0..count).map(|i| {
@@ -152,7 +154,7 @@ fn disc(radius_mm: f32) -> Arc<MeshAsset> {
 }
 
 /// The brightness-weighted mean of pixel coordinates; the disc has one brightness, so that is its coverage.
-fn centroid(rgba: &[u8], width: usize) -> DVec2 {
+pub fn centroid(rgba: &[u8], width: usize) -> DVec2 {
     let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
     for (index, texel) in rgba.chunks_exact(4).enumerate() {
         let value = f64::from(texel[0]);
@@ -172,7 +174,7 @@ fn references_are_outlined_whether_or_not_objects_are() {
     let mut picture = picture(camera, whole, disc(40.0), Pose::from_translation(DVec3::Z * 500.0));
     picture.ghosts = std::mem::take(&mut picture.items);
     picture.ghosts[0].color = Rgb([255, 64, 220]);
-    picture.ghost_width_px = 2.0;
+    picture.widths.ghost_px = 2.0;
     let pending = renderer.draw_and_read(&picture, [200, 150], Layer::Picture);
     let pixels = pending.wait(renderer.gpu()).unwrap();
     let drawn = pixels.rgba.chunks_exact(4).filter(|texel| texel[0] > 128).count();

@@ -11,6 +11,7 @@ mod gpu_and_cpu;
 mod images_corpus;
 mod layers;
 mod linemod;
+mod looks;
 mod mesh_corpus;
 mod panels;
 mod scenes;
