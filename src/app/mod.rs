@@ -10,6 +10,7 @@ mod events;
 mod input;
 mod jobs;
 mod loading;
+mod mask_layer;
 mod performance;
 mod photo_cache;
 mod pictures;
@@ -43,6 +44,7 @@ pub struct PinPose {
     calls: PageCalls,
     answers: answers::Answers,
     pictures: pictures::Pictures,
+    mask_layer: mask_layer::MaskLayer,
     ctx: egui::Context,
     performance: performance::Performance,
     events: events::Events,
@@ -87,6 +89,7 @@ impl PinPose {
             calls: start.calls,
             answers: answers::Answers::default(),
             pictures: pictures::Pictures::default(),
+            mask_layer: mask_layer::MaskLayer::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             events: events::Events::default(),
@@ -128,6 +131,7 @@ impl eframe::App for PinPose {
         self.take_keys(ctx);
         self.take_gestures(ctx);
         self.want_pixels();
+        self.update_mask_layer();
         self.make_pictures(ctx);
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
@@ -141,6 +145,7 @@ impl eframe::App for PinPose {
             view: &self.view,
             renderer: self.renderer.as_ref(),
             pixels,
+            masks: self.mask_layer.pixels(),
             saving: self.autosave.state(&self.session),
             busy: self
                 .loading

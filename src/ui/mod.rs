@@ -58,6 +58,8 @@ pub struct Surroundings<'a> {
     pub renderer: Option<&'a SharedRenderer>,
     /// The pixels of the photo that is shown, once they are decoded.
     pub pixels: Option<std::sync::Arc<crate::photo::Pixels>>,
+    /// Its masks, tinted.
+    pub masks: Option<std::sync::Arc<crate::photo::Pixels>>,
     pub saving: Saving,
     /// What is being loaded, for the user to read.
     pub busy: Option<String>,

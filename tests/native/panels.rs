@@ -23,6 +23,7 @@ fn harness(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>) {
             view: &PhotoView::default(),
             renderer: None,
             pixels: None,
+            masks: None,
             saving: Saving::Saved,
             busy: None,
             update_ready: false,

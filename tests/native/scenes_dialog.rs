@@ -55,6 +55,7 @@ fn harness(
             view: &PhotoView::default(),
             renderer: None,
             pixels: None,
+            masks: None,
             saving: Saving::Saved,
             busy: None,
             update_ready: false,
