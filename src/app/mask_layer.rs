@@ -30,8 +30,12 @@ impl PinPose {
     /// Keeps the layer in step with the scene. A mask that is not decoded yet is sent for, and comes with a later frame.
     pub(super) fn update_mask_layer(&mut self) {
         let Some(photo) = self.session.photo() else { return };
-        let visible: Vec<&Mask> =
-            self.session.scene().masks_of(photo.id).filter(|mask| mask.visible && mask.opacity > 0.0).collect();
+        let visible: Vec<&Mask> = self
+            .session
+            .scene()
+            .masks_of(photo.id)
+            .filter(|mask| mask.visible && mask.opacity > 0.0)
+            .collect();
         let of_mask = |mask: &&Mask| (mask.asset.sha256, mask.color, mask.opacity.to_bits());
         let key = Key { photo: Some(photo.id), masks: visible.iter().map(of_mask).collect() };
         if key == self.mask_layer.made_of {

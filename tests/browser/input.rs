@@ -108,6 +108,25 @@ impl Page {
         })
     }
 
+    /// Presses, moves from point to point, releases.
+    pub fn drag_along(
+        &mut self,
+        from: Point,
+        path: &[Point],
+        button: Button,
+        modifiers: &[Modifier],
+    ) -> anyhow::Result<()> {
+        let last = *path.last().context("A drag without steps")?;
+        self.hold(modifiers, |page| {
+            page.mouse_move(from)?;
+            page.press(from, button, modifiers)?;
+            for at in path {
+                page.move_holding(*at, button, modifiers)?;
+            }
+            page.release(last, button, modifiers)
+        })
+    }
+
     /// Turns the wheel over a point by so many notches, quickly; positive is up, away from the user.
     pub fn wheel(&mut self, at: Point, notches: i32, modifiers: &[Modifier]) -> anyhow::Result<()> {
         // Pixels a notch, down, as Chromium reports a wheel.
@@ -139,6 +158,25 @@ impl Page {
             }
             page.keyboard("keyDown", &fields)?;
             page.keyboard("keyUp", &fields)
+        })
+    }
+
+    /// Presses a key so many times, quickly: the page may have had fewer frames meanwhile.
+    pub fn keys(&mut self, key: &str, times: u32, modifiers: &[Modifier]) -> anyhow::Result<()> {
+        if times == 0 {
+            return Ok(());
+        }
+        let bits = bits(modifiers);
+        self.hold(modifiers, |page| {
+            let mut fields = key_fields(key, false)?;
+            fields["modifiers"] = bits.into();
+            for _ in 0..times {
+                for kind in ["rawKeyDown", "keyUp"] {
+                    fields["type"] = kind.into();
+                    page.call("Input.dispatchKeyEvent", fields.clone())?;
+                }
+            }
+            page.next_frame()
         })
     }
 

@@ -68,3 +68,53 @@ pub fn distance(a: Vector, b: Vector) -> f64 {
 pub fn distance_px(a: Point, b: Point) -> f64 {
     (a.0 - b.0).hypot(a.1 - b.1)
 }
+
+/// ADD: the mean distance of the vertices under two poses.
+pub fn add_mm(a: &Matrix, b: &Matrix, vertices: &[Vector]) -> f64 {
+    let sum: f64 =
+        vertices.iter().map(|vertex| distance(transformed(a, *vertex), transformed(b, *vertex))).sum();
+    sum / vertices.len() as f64
+}
+
+/// The rotation that leads from one to another, `to · fromᵀ`, as axis times angle.
+pub fn axis_angle_between(from: &[[f64; 3]; 3], to: &[[f64; 3]; 3]) -> Vector {
+    let transposed = [0, 1, 2].map(|row| [0, 1, 2].map(|column| from[column][row]));
+    let r = product(to, &transposed);
+    let angle = ((r[0][0] + r[1][1] + r[2][2] - 1.0) / 2.0).clamp(-1.0, 1.0).acos();
+    let twice_sin = [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]];
+    if angle < 1e-9 {
+        return twice_sin.map(|value| value / 2.0);
+    }
+    if angle > std::f64::consts::PI - 1e-3 {
+        // Near half a turn the axis is where R + I is longest.
+        let columns = [0, 1, 2]
+            .map(|column| [0, 1, 2].map(|row| r[row][column] + if row == column { 1.0 } else { 0.0 }));
+        let longest = columns.into_iter().max_by(|a, b| norm(*a).total_cmp(&norm(*b))).unwrap_or_default();
+        return longest.map(|value| value / norm(longest) * angle);
+    }
+    twice_sin.map(|value| value / norm(twice_sin) * angle)
+}
+
+/// The shortest rotation that takes one direction to another.
+pub fn rotation_between(from: Vector, to: Vector) -> [[f64; 3]; 3] {
+    let [a, b] = [from, to].map(|vector| vector.map(|value| value / norm(vector)));
+    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let dot: f64 = (0..3).map(|axis| a[axis] * b[axis]).sum();
+    let skew = [[0.0, -cross[2], cross[1]], [cross[2], 0.0, -cross[0]], [-cross[1], cross[0], 0.0]];
+    let squared = product(&skew, &skew);
+    [0, 1, 2].map(|row| {
+        [0, 1, 2].map(|column| {
+            let identity = if row == column { 1.0 } else { 0.0 };
+            identity + skew[row][column] + squared[row][column] / (1.0 + dot)
+        })
+    })
+}
+
+/// A vector in the frame that a rotation leads from.
+pub fn rotated_back(rotation: &[[f64; 3]; 3], vector: Vector) -> Vector {
+    [0, 1, 2].map(|column| (0..3).map(|row| rotation[row][column] * vector[row]).sum())
+}
+
+pub fn norm(vector: Vector) -> f64 {
+    distance(vector, [0.0; 3])
+}

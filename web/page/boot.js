@@ -41,6 +41,17 @@ canvas.addEventListener('webglcontextlost', () => {
   showCrash('The connection to the graphics card was lost (WebGL context lost).');
 });
 
+// Combinations that browsers have commands of their own for would leave the page, or open a bar over it. What people need of
+// the browser itself stays: copy, paste and cut, reload, tabs and windows, and its tools.
+const LEFT_TO_THE_BROWSER = ['KeyC', 'KeyV', 'KeyX', 'KeyR', 'KeyT', 'KeyW', 'KeyN', 'KeyQ', 'Tab'];
+window.addEventListener('keydown', (event) => {
+  const { code, altKey, ctrlKey, metaKey, shiftKey } = event;
+  const tools = shiftKey && ['KeyI', 'KeyJ', 'KeyC'].includes(code);
+  const command = (ctrlKey || metaKey) && /^Key[A-Z]$/.test(code) && !tools;
+  const alternate = altKey && (code.startsWith('Arrow') || /^Key[A-Z]$/.test(code) || code.startsWith('Bracket'));
+  if (alternate || (command && !LEFT_TO_THE_BROWSER.includes(code))) event.preventDefault();
+});
+
 card.classList.add('loading');
 boot();
 

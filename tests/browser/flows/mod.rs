@@ -1,6 +1,7 @@
 //! The flows: what a user does with the page, on which backends.
 
 mod bad_input;
+mod expert;
 mod idle;
 mod masks;
 mod path;
@@ -58,6 +59,8 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "idle", idle::idle),
     Flow::on(WEBGPU, "idle-webgpu", idle::idle).long(),
     Flow::on(BOTH, "drag-cost", idle::drag_cost),
+    Flow::on(WEBGPU, "expert", expert::three_samples),
+    Flow::on(BOTH, "expert-all", expert::all_samples).long(),
     Flow::on(WEBGL, "bad-input", bad_input::bad_files),
     Flow::on(WEBGL, "bad-calls", bad_input::bad_calls),
     Flow::on(WEBGL, "offline", safety::offline),
