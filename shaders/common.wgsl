@@ -1,6 +1,7 @@
 // What every pass knows: the camera, the part of its image that fills the target, the target, and how things are shown.
 
 struct Frame {
+    // To the clip space of the window
     clip_from_eye: mat4x4<f32>,
     // The part of the `image` frame that fills the target: min x, min y, width, height, in photo pixels.
     image_rect: vec4<f32>,
@@ -28,6 +29,8 @@ struct Frame {
     more: vec4<f32>,
     // The nearest depth in mm, 1 / the range of depths, the width of mesh edges in target pixels, 0
     lines: vec4<f32>,
+    // The part of the target that meshes are drawn for: its corner and size in target pixels
+    window: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

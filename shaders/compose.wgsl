@@ -109,8 +109,9 @@ fn with_outlines(below: vec3<f32>, target_position: vec2<f32>, texel: vec2<i32>)
 @fragment
 fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let target_position = position.xy - frame.target_rect.xy;
-    let last = vec2<i32>(frame.target_rect.zw) - 1;
-    let texel = clamp(vec2<i32>(floor(target_position)), vec2<i32>(0), last);
+    let place = floor(target_position) - frame.window.xy;
+    let is_in_window = all(place >= vec2<f32>(0.0)) && all(place < frame.window.zw);
+    let texel = vec2<i32>(clamp(place, vec2<f32>(0.0), frame.window.zw - 1.0));
 
     var color: vec3<f32>;
     if (frame.more.z > 0.5) {
@@ -119,7 +120,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         color = photo_color(target_position);
     }
     // A pixel is on one side or the other by its centre.
-    if (frame.shown.z <= 0.0 || target_position.x < frame.shown.y) {
+    if (is_in_window && (frame.shown.z <= 0.0 || target_position.x < frame.shown.y)) {
         color = with_overlay(color, texel);
         color = with_outlines(color, target_position, texel);
     }

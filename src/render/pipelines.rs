@@ -316,6 +316,8 @@ impl Recipe {
             vertex: "vs_plane",
             fragment: Some("fs_plane"),
             buffers: PLANE_VERTICES,
+            // Its own border runs on it.
+            depth: Some(DepthUse::SOLID_BEHIND_LINES),
             blend: Some(OVER),
             ..lit
         };

@@ -137,8 +137,8 @@ impl Renderer {
         let picture = &wanted.picture;
         self.upload_meshes(slot, picture);
         let view = &mut self.views[slot as usize];
-        view.fit_targets(&self.gpu, picture, wanted.size);
-        view.upload(&self.gpu, &self.usage, &self.pipelines, picture, (wanted.corner, wanted.size));
+        let window = view.fit_targets(&self.gpu, &wanted);
+        view.upload(&self.gpu, &self.usage, &self.pipelines, &wanted, &window);
         self.bind_textures(slot, picture, wanted.size);
         let view = &self.views[slot as usize];
         if let Some(targets) = &view.targets {
@@ -151,6 +151,7 @@ impl Renderer {
                 view,
                 targets,
                 picture,
+                pixels_per_photo_pixel: f64::from(wanted.size[0]) / picture.rect.size().x,
             };
             passes.record(encoder, wanted.with_ids);
         }
