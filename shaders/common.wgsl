@@ -18,14 +18,11 @@ struct Frame {
     // Half the outline's width in target pixels (0: no outline), the same for the selected object, and for references
     // (0: there are none), the length of their dashes
     outline: vec4<f32>,
-    // Target pixels: min x, min y, max x, max y of where outlines can be
-    outlined: vec4<f32>,
     // Brightness, factors of contrast and saturation, 1 if any of them changes anything
     adjustment: vec4<f32>,
-    // 1 if there is an overlay, where the wipe is in target pixels, half the width of its line (0: no wipe), 1 for the
-    // difference in place of the overlay
+    // 1 if there is an overlay, where the wipe is in target pixels, half the width of its line (0: no wipe), 0
     shown: vec4<f32>,
-    // 1 if there are masks, 1 for outlines of what is hidden, 1 for a free view, the mode (Look's order)
+    // 1 if there are masks, 1 for outlines of what is hidden, 0, the mode (Look's order)
     more: vec4<f32>,
     // The nearest depth in mm, 1 / the range of depths, the width of mesh edges in target pixels, 0
     lines: vec4<f32>,

@@ -6,12 +6,12 @@ use std::time::Instant;
 
 use glam::{DMat3, DVec3};
 use pinpose::math::{ImageRect, Intrinsics, Pose};
-use pinpose::mesh::{Bvh, Mesh};
+use pinpose::mesh::{Bvh, Mesh, MeshData};
 use pinpose::photo::Pixels;
 use pinpose::render::{Gpu, Item, LineWidths, PhotoLayer, Picture, Renderer, ViewSlot};
 use pinpose::scene::{Look, MeshAsset, OverlayMode, Rgb, Sha256};
 
-use crate::{row, sheet};
+use crate::row;
 
 const SIZE: [u32; 2] = [1280, 800];
 
@@ -31,25 +31,39 @@ pub fn frames() {
         println!("{:<46}{peak_mib:>12.1}{:>10}  MiB", "peak memory with nothing loaded", "");
     }
     for (side, peer_ms) in PEER_MS {
-        let mesh = asset(sheet(side));
+        let mesh = asset(potato(side));
         for mode in [OverlayMode::Shaded, OverlayMode::Outline, OverlayMode::Edges, OverlayMode::Wireframe] {
             let picture = picture(&mesh, mode);
-            let cpu = cpu_ms();
-            let (frame_ms, own_ms) = drag_step_ms(&mut renderer, picture);
+            let Step { frame_ms, own_ms, processor_ms } = drag_step(&mut renderer, picture);
             let what = format!("drag step, {} triangles, {}", 2 * side * side, mode.name());
-            println!("cpu per step {}", (cpu_ms() - cpu) / 9.0);
             row(&what, frame_ms, peer_ms, &format!("{peer_ms} ms"));
             row("  the program's own share", own_ms, frame_ms, "the whole step");
+            if let Some(processor_ms) = processor_ms {
+                row("  processor time, all threads", processor_ms, frame_ms, "the whole step");
+            }
         }
     }
 }
 
-/// The median of a step's time until the GPU is done, and of the part until it is handed over.
-fn drag_step_ms(renderer: &mut Renderer, mut picture: Picture) -> (f64, f64) {
+struct Step {
+    /// The median time until the GPU is done.
+    frame_ms: f64,
+    /// The part until everything is handed over to it.
+    own_ms: f64,
+    /// The mean over all threads. A software GPU's work is in it, and other programs' is not.
+    processor_ms: Option<f64>,
+}
+
+fn drag_step(renderer: &mut Renderer, mut picture: Picture) -> Step {
     let gpu = renderer.gpu().clone();
     let target = screen(&gpu);
     let mut times: Vec<(f64, f64)> = Vec::new();
-    for step in 0..9 {
+    let mut processor_start_ms = None;
+    for step in 0..12 {
+        // The first steps upload the mesh and make pipelines.
+        if step == 2 {
+            processor_start_ms = processor_time_ms();
+        }
         let pose = &mut picture.items[0].camera_from_object;
         pose.translation_mm.x += 1.0;
         let start = Instant::now();
@@ -59,7 +73,6 @@ fn drag_step_ms(renderer: &mut Renderer, mut picture: Picture) -> (f64, f64) {
         gpu.queue.submit([encoder.finish()]);
         let own_ms = start.elapsed().as_secs_f64() * 1000.0;
         black_box(gpu.device.poll(wgpu::PollType::wait_indefinitely()).is_ok());
-        // The first steps upload the mesh and make pipelines.
         if step >= 2 {
             times.push((start.elapsed().as_secs_f64() * 1000.0, own_ms));
         }
@@ -68,7 +81,13 @@ fn drag_step_ms(renderer: &mut Renderer, mut picture: Picture) -> (f64, f64) {
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
     };
-    (median(times.iter().map(|time| time.0).collect()), median(times.iter().map(|time| time.1).collect()))
+    let processor_ms =
+        processor_time_ms().zip(processor_start_ms).map(|(end, start)| (end - start) / times.len() as f64);
+    Step {
+        frame_ms: median(times.iter().map(|time| time.0).collect()),
+        own_ms: median(times.iter().map(|time| time.1).collect()),
+        processor_ms,
+    }
 }
 
 /// The composition, as the interface's own pass calls it.
@@ -99,7 +118,29 @@ fn screen(gpu: &Gpu) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// The sheet at half a metre, turned a little: a third of the picture's height.
+/// A closed, bumpy surface of about `2 * side * side` triangles, 160 mm wide, as a scan of an object is.
+#[expect(clippy::expect_used, reason = "the surface is made here")]
+fn potato(side: u32) -> Mesh {
+    let point = |x: u32, y: u32| {
+        let azimuth = f64::from(x) / f64::from(side) * std::f64::consts::TAU;
+        let polar = f64::from(y) / f64::from(side) * std::f64::consts::PI;
+        let direction = DVec3::new(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
+        let bumps = (5.0 * azimuth).sin() * polar.sin() + (7.0 * polar).cos();
+        (direction * (68.0 + 6.0 * bumps)).as_vec3()
+    };
+    let corner = |x: u32, y: u32| y * side + x % side;
+    let positions_mm = (0..=side).flat_map(|y| (0..side).map(move |x| point(x, y))).collect();
+    let triangles = (0..side)
+        .flat_map(|y| (0..side).map(move |x| (x, y)))
+        .flat_map(|(x, y)| {
+            let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+            [[a, d, b], [b, d, c]]
+        })
+        .collect();
+    Mesh::new(MeshData { positions_mm, triangles, ..MeshData::default() }).expect("the surface is a mesh")
+}
+
+/// The mesh at 70 cm, turned a little: a third of the picture's height.
 fn picture(mesh: &Arc<MeshAsset>, mode: OverlayMode) -> Picture {
     let camera = Intrinsics::from_focal(1200.0, SIZE[0], SIZE[1]);
     let pixels =
@@ -129,16 +170,20 @@ fn picture(mesh: &Arc<MeshAsset>, mode: OverlayMode) -> Picture {
     }
 }
 
-fn cpu_ms() -> f64 {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
-    fields[11..13].iter().map(|f| f.parse::<f64>().unwrap_or(0.0)).sum::<f64>() * 10.0
-}
-
 fn asset(mesh: Mesh) -> Arc<MeshAsset> {
     let bvh = Bvh::build(&mesh);
     let (file_name, bytes) = ("sheet".to_owned(), Arc::from([]));
     Arc::new(MeshAsset { file_name, sha256: Sha256::of(b"sheet"), bytes, mesh, bvh })
+}
+
+/// User and system time of all threads, in steps of 10 ms; Linux only.
+fn processor_time_ms() -> Option<f64> {
+    const MS_PER_TICK: f64 = 10.0;
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // After the program's name, which may hold anything, the two are fields 14 and 15 of the line.
+    let fields: Vec<&str> = stat.rsplit(')').next()?.split_whitespace().collect();
+    let ticks = |field: usize| fields.get(field)?.parse::<f64>().ok();
+    Some((ticks(11)? + ticks(12)?) * MS_PER_TICK)
 }
 
 /// What the system says of this process; Linux only.

@@ -80,7 +80,7 @@ fn pixels(size: [u32; 2]) -> DVec2 {
 }
 
 /// Target pixels that meshes and outlines can be on: min x, min y, max x, max y. It is never too small.
-pub fn drawn_px(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
+fn drawn_px(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
     let whole = [0.0, 0.0, size[0] as f32, size[1] as f32];
     // A lens bends a box's sides: then the whole target is searched.
     if !picture.camera.distortion.is_none() {

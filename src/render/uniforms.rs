@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::extent::{Window, depth_range_mm, drawn_px};
+use super::extent::{Window, depth_range_mm};
 use super::{Item, PhotoPlane, Picture};
 use crate::math::{Pose, clip_from_camera};
 use crate::scene::{OverlayMode, PhotoAdjustment, Rgb};
@@ -24,7 +24,6 @@ pub struct FrameUniform {
     photo: [f32; 4],
     background: [f32; 4],
     outline: [f32; 4],
-    outlined: [f32; 4],
     adjustment: [f32; 4],
     shown: [f32; 4],
     more: [f32; 4],
@@ -64,13 +63,12 @@ impl FrameUniform {
             photo: photo_part(picture, size),
             background: [red, green, blue, picture.look.overlay_opacity],
             outline: outline_part(picture),
-            outlined: drawn_px(picture, size),
             adjustment: adjustment_part(&picture.look.photo),
             shown: shown_part(picture, size),
             more: [
                 flag(picture.shows_masks()),
                 flag(picture.outlines_hidden()),
-                flag(picture.surroundings.is_some()),
+                0.0,
                 picture.look.mode as u32 as f32,
             ],
             lines: lines_part(picture),
@@ -113,7 +111,7 @@ fn shown_part(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
         flag(has_overlay),
         wipe.map_or(0.0, |part| part * size[0] as f32),
         wipe.map_or(0.0, |_| picture.widths.wipe_px / 2.0),
-        flag(picture.look.difference),
+        0.0,
     ]
 }
 
