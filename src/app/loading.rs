@@ -7,7 +7,10 @@ use std::sync::Arc;
 
 use super::PinPose;
 use super::jobs::{Done, JobKind, Jobs};
-use crate::formats::{Document, FileKind, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive};
+use crate::formats::{
+    Document, FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
+    with_companions,
+};
 use crate::photo::Pixels;
 use crate::platform::{self, FileBytes, Loaded, PageAnswer, PageReply, Saved};
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
@@ -103,21 +106,21 @@ impl Loading {
 
     /// Decodes a photo of the scene that is to be shown.
     pub fn decode(&mut self, photo: &PhotoAsset) {
-        self.jobs
-            .submit(JobKind::Photo, NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() });
+        let file = NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() };
+        self.jobs.submit(JobKind::Photo, file, &[]);
     }
 
     fn start(&mut self, arrival: Arrival) {
         let batch = Batch { poses_as: arrival.poses_as, ..Batch::default() };
         let mut load = self.new_load(batch, arrival.reply);
+        let mut files = Vec::new();
         for file in arrival.files {
             match file {
-                Ok(file) => {
-                    self.take_file(&mut load, NamedFile { name: file.name, bytes: Arc::from(file.bytes) });
-                }
+                Ok(file) => files.push(NamedFile { name: file.name, bytes: Arc::from(file.bytes) }),
                 Err(problem) => load.problems.push(problem),
             }
         }
+        self.take_files(&mut load, files);
         self.loads.push(load);
     }
 
@@ -128,7 +131,7 @@ impl Loading {
         let mut load = self.new_load(Batch::default(), None);
         load.opening = Some((document, Origin::Storage));
         for asset in saved.assets {
-            self.take_file(&mut load, NamedFile { name: asset.file_name, bytes: asset.bytes });
+            self.take_file(&mut load, NamedFile { name: asset.file_name, bytes: asset.bytes }, &[]);
         }
         self.loads.push(load);
         Ok(())
@@ -148,7 +151,14 @@ impl Loading {
         }
     }
 
-    fn take_file(&mut self, load: &mut Load, file: NamedFile) {
+    /// Files that came together: textures are taken along with their meshes.
+    fn take_files(&mut self, load: &mut Load, files: Vec<NamedFile>) {
+        for FileWithCompanions { file, companions } in with_companions(files) {
+            self.take_file(load, file, &companions);
+        }
+    }
+
+    fn take_file(&mut self, load: &mut Load, file: NamedFile, companions: &[NamedFile]) {
         if file.bytes.is_empty() {
             load.problems.push(format!("{}: the file is empty", file.name));
             return;
@@ -160,7 +170,7 @@ impl Loading {
             _ => None,
         };
         if let Some(job) = job {
-            let id = self.jobs.submit(job, file);
+            let id = self.jobs.submit(job, file, companions);
             self.load_of_job.insert(id, load.id);
             load.jobs_left += 1;
             return;
@@ -180,8 +190,8 @@ impl Loading {
             Parsed::Poses(poses) => load.batch.poses.push(poses),
             Parsed::Workspace(workspace) => {
                 load.opening = Some((workspace.document, Origin::Workspace));
-                for file in workspace.files {
-                    self.take_file(load, file);
+                for FileWithCompanions { file, companions } in workspace.files {
+                    self.take_file(load, file, &companions);
                 }
             }
         }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::{Failure, Outcome, open};
-use crate::formats::{NamedFile, Parsed};
+use crate::formats::{FileWithCompanions, NamedFile, Parsed, with_companions};
 
 pub fn run(mut parser: lexopt::Parser) -> Outcome {
     let mut paths = Vec::new();
@@ -20,8 +20,8 @@ pub fn run(mut parser: lexopt::Parser) -> Outcome {
     }
     let mut problems = Vec::new();
     let mut found = Vec::new();
-    for file in open::read_files(&paths)? {
-        match open::parse(&file) {
+    for FileWithCompanions { file, companions } in with_companions(open::read_files(&paths)?) {
+        match open::parse(&file, &companions) {
             Ok((parsed, warnings)) => found.push(describe(&file, &parsed, &warnings)),
             Err(problem) => problems.push(problem),
         }
@@ -64,7 +64,7 @@ fn describe(file: &NamedFile, parsed: &Parsed, warnings: &[String]) -> Value {
             json!({
                 "name": workspace.document.name,
                 "poses": workspace.document.pose_count(),
-                "files": workspace.files.iter().map(|file| file.name.as_str()).collect::<Vec<_>>(),
+                "files": workspace.files.iter().map(|entry| entry.file.name.as_str()).collect::<Vec<_>>(),
             }),
         ),
     };
@@ -78,7 +78,8 @@ fn mesh_content(asset: &crate::scene::MeshAsset) -> Value {
         "vertices": mesh.positions_mm().len(),
         "triangles": mesh.triangles().len(),
         "normals": mesh.normals().is_some(),
-        "colors": mesh.colors().is_some(),
+        "colors": mesh.has_colors(),
+        "textures": mesh.paint().map_or(0, |paint| paint.textures.len()),
         "min_mm": bounds.min.to_array(),
         "max_mm": bounds.max.to_array(),
         "size_mm": bounds.size().to_array(),

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use super::Failure;
 use crate::formats::{
-    FileKind, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive, read_mesh, read_photo,
+    FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
+    read_mesh_with, read_photo, with_companions,
 };
 use crate::session::{Batch, Command, Effect, Opening, Session, Severity};
 
@@ -48,13 +49,14 @@ fn file_name(path: &Path) -> String {
 }
 
 /// One file, recognised and read.
-pub fn parse(file: &NamedFile) -> Result<(Parsed, Vec<String>), String> {
+pub fn parse(file: &NamedFile, companions: &[NamedFile]) -> Result<(Parsed, Vec<String>), String> {
     if file.bytes.is_empty() {
         return Err(format!("{}: the file is empty", file.name));
     }
     let parsed = match classify(&file.name, &file.bytes) {
         FileKind::Photo => read_photo(file).map(|(asset, _)| (Parsed::Photo(Arc::new(asset)), Vec::new())),
-        FileKind::Mesh => read_mesh(file).map(|(asset, warnings)| (Parsed::Mesh(Arc::new(asset)), warnings)),
+        FileKind::Mesh => read_mesh_with(file, companions)
+            .map(|(asset, warnings)| (Parsed::Mesh(Arc::new(asset)), warnings)),
         kind => parse_text_or_archive(file, kind).map(|parsed| (parsed, Vec::new())),
     };
     parsed.map_err(|error| format!("{}: {error}", file.name))
@@ -65,12 +67,12 @@ pub fn parse(file: &NamedFile) -> Result<(Parsed, Vec<String>), String> {
 pub fn open_session(paths: &[PathBuf]) -> Result<Session, Failure> {
     let named: Vec<String> = paths.iter().filter(|path| !path.is_dir()).map(|path| file_name(path)).collect();
     let mut opened = Opened::default();
-    for file in read_files(paths)? {
+    for FileWithCompanions { file, companions } in with_companions(read_files(paths)?) {
         if !named.contains(&file.name) && classify(&file.name, &file.bytes) == FileKind::Unknown {
             eprintln!("pinpose: {}: left out, not a kind of file that is read", file.name);
             continue;
         }
-        opened.take(&file, !named.contains(&file.name));
+        opened.take(&file, &companions, !named.contains(&file.name));
     }
     if !opened.problems.is_empty() {
         return Err(Failure::Input(opened.problems));
@@ -86,8 +88,8 @@ struct Opened {
 }
 
 impl Opened {
-    fn take(&mut self, file: &NamedFile, lenient: bool) {
-        match parse(file) {
+    fn take(&mut self, file: &NamedFile, companions: &[NamedFile], lenient: bool) {
+        match parse(file, companions) {
             Ok((Parsed::Photo(photo), _)) => self.batch.photos.push(photo),
             Ok((Parsed::Mesh(mesh), warnings)) => {
                 warnings.iter().for_each(|warning| eprintln!("pinpose: {}: {warning}", file.name));
@@ -97,7 +99,9 @@ impl Opened {
             Ok((Parsed::Poses(poses), _)) => self.batch.poses.push(poses),
             Ok((Parsed::Workspace(workspace), _)) => {
                 self.document = Some(workspace.document);
-                workspace.files.iter().for_each(|file| self.take(file, false));
+                for FileWithCompanions { file, companions } in workspace.files {
+                    self.take(&file, &companions, false);
+                }
             }
             Err(problem) if lenient => eprintln!("pinpose: {problem}: left out"),
             Err(problem) => self.problems.push(problem),

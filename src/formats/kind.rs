@@ -26,7 +26,7 @@ pub fn classify(name: &str, bytes: &[u8]) -> FileKind {
     }
     match extension.as_str() {
         "png" | "jpg" | "jpeg" => FileKind::Photo,
-        "ply" | "obj" | "glb" | "gltf" => FileKind::Mesh,
+        "ply" | "obj" | "stl" | "glb" | "gltf" | "off" => FileKind::Mesh,
         "zip" => FileKind::Workspace,
         _ => classify_text(&extension, bytes),
     }

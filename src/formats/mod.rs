@@ -3,6 +3,7 @@
 //! Knows nothing of the interface: bytes and names in, [`Parsed`] or one [`FormatError`] out.
 
 mod camera_json;
+mod companions;
 mod document;
 mod error;
 mod incoming;
@@ -16,6 +17,7 @@ use std::sync::Arc;
 use crate::scene::{MeshAsset, PhotoAsset};
 
 pub use camera_json::CameraFile;
+pub use companions::{FileWithCompanions, kept, with_companions};
 pub use document::{DOCUMENT_SCHEMA, Document, Keep, ViewSettings, read_document, write_document};
 pub use error::FormatError;
 pub use incoming::{Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, PosesAs};
@@ -79,14 +81,24 @@ pub fn read_photo(file: &NamedFile) -> Result<(PhotoAsset, crate::photo::Pixels)
     Ok((asset, decoded.pixels))
 }
 
-/// Parses a mesh's file; the second value is what was odd about it.
+/// Parses a mesh's file that came alone; the second value is what was odd about it.
 pub fn read_mesh(file: &NamedFile) -> Result<(MeshAsset, Vec<String>), FormatError> {
-    let loaded = crate::mesh::load(&file.name, &file.bytes)?;
+    read_mesh_with(file, &[])
+}
+
+/// Parses a mesh's file and takes its textures from those that came with it.
+pub fn read_mesh_with(
+    file: &NamedFile,
+    companions: &[NamedFile],
+) -> Result<(MeshAsset, Vec<String>), FormatError> {
+    let find = |key: &str| companions::find_among(companions, key);
+    let loaded = crate::mesh::load(&file.name, &file.bytes, &find)?;
     let bvh = crate::mesh::Bvh::build(&loaded.mesh);
     let asset = MeshAsset {
         file_name: file.name.clone(),
         sha256: crate::scene::Sha256::of(&file.bytes),
         bytes: file.bytes.clone(),
+        companions: companions::kept(companions),
         mesh: loaded.mesh,
         bvh,
     };

@@ -1,12 +1,17 @@
 //! The workspace: a zip with `scene.json` (our own document) and every photo and mesh beside it. It opens anywhere.
+//!
+//! Each file has a folder of its own; a mesh shares it with its textures and material libraries.
 
+use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Write};
 use std::sync::Arc;
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-use super::{Document, FormatError, NamedFile, read_document, write_document};
+use super::{
+    Document, FileKind, FileWithCompanions, FormatError, NamedFile, classify, read_document, write_document,
+};
 use crate::scene::{Scene, Sha256};
 
 /// Where the document is in the archive.
@@ -19,7 +24,7 @@ const MAX_UNPACKED_BYTES: u64 = 512 << 20;
 #[derive(Debug, Clone)]
 pub struct Workspace {
     pub document: Document,
-    pub files: Vec<NamedFile>,
+    pub files: Vec<FileWithCompanions>,
 }
 
 /// Packs a scene with everything it needs.
@@ -52,6 +57,12 @@ pub fn write_workspace(document: &Document, scene: &Scene) -> Result<Vec<u8>, Fo
         let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
         writer.start_file(format!("{folder}/{prefix}/{base}"), options).map_err(archive)?;
         writer.write_all(bytes).map_err(io)?;
+        let mesh = scene.objects.iter().map(|object| &object.mesh).find(|mesh| mesh.sha256 == sha256);
+        for companion in mesh.iter().flat_map(|mesh| &mesh.companions) {
+            let base = companion.file_name.rsplit(['/', '\\']).next().unwrap_or_default();
+            writer.start_file(format!("{folder}/{prefix}/{base}"), options).map_err(archive)?;
+            writer.write_all(&companion.bytes).map_err(io)?;
+        }
     }
     Ok(writer.finish().map_err(archive)?.into_inner())
 }
@@ -61,7 +72,7 @@ pub fn read_workspace(bytes: &[u8]) -> Result<Workspace, FormatError> {
     let damaged = |error: zip::result::ZipError| FormatError::Archive(error.to_string());
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(damaged)?;
     let mut document = None;
-    let mut files = Vec::new();
+    let mut files: Vec<(String, NamedFile)> = Vec::new();
     let mut budget = MAX_UNPACKED_BYTES;
     for index in 0..archive.len() {
         let entry = archive.by_index(index).map_err(damaged)?;
@@ -79,8 +90,8 @@ pub fn read_workspace(bytes: &[u8]) -> Result<Workspace, FormatError> {
         if name == DOCUMENT_NAME {
             document = Some(read_document(&content)?);
         } else {
-            let base = name.rsplit('/').next().unwrap_or(&name).to_owned();
-            files.push(NamedFile { name: base, bytes: Arc::from(content) });
+            let (folder, base) = name.rsplit_once('/').unwrap_or(("", &name));
+            files.push((folder.to_owned(), NamedFile { name: base.to_owned(), bytes: Arc::from(content) }));
         }
     }
     let document = document.ok_or_else(|| {
@@ -89,5 +100,28 @@ pub fn read_workspace(bytes: &[u8]) -> Result<Workspace, FormatError> {
             "missing; only zips that were saved as a PinPose workspace can be opened",
         )
     })?;
-    Ok(Workspace { document, files })
+    Ok(Workspace { document, files: with_folders(files) })
+}
+
+/// What is beside a mesh in a folder of its own goes with it.
+fn with_folders(files: Vec<(String, NamedFile)>) -> Vec<FileWithCompanions> {
+    let is_mesh = |file: &NamedFile| classify(&file.name, &file.bytes) == FileKind::Mesh;
+    let mut companions_of: BTreeMap<String, Vec<NamedFile>> = BTreeMap::new();
+    for (folder, _) in files.iter().filter(|(folder, file)| folder.starts_with("meshes/") && is_mesh(file)) {
+        companions_of.insert(folder.clone(), Vec::new());
+    }
+    let mut own = Vec::new();
+    for (folder, file) in files {
+        match companions_of.get_mut(&folder) {
+            Some(companions) if !is_mesh(&file) => companions.push(file),
+            _ => own.push((folder, file)),
+        }
+    }
+    own.into_iter()
+        .map(|(folder, file)| FileWithCompanions {
+            companions: if is_mesh(&file) { companions_of.get(&folder).cloned() } else { None }
+                .unwrap_or_default(),
+            file,
+        })
+        .collect()
 }

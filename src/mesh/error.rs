@@ -9,7 +9,9 @@ use thiserror::Error;
 pub enum Format {
     Ply,
     Obj,
+    Stl,
     Gltf,
+    Off,
 }
 
 impl fmt::Display for Format {
@@ -17,7 +19,9 @@ impl fmt::Display for Format {
         f.write_str(match self {
             Self::Ply => "PLY",
             Self::Obj => "OBJ",
+            Self::Stl => "STL",
             Self::Gltf => "glTF",
+            Self::Off => "OFF",
         })
     }
 }
@@ -46,12 +50,14 @@ impl fmt::Display for Place {
 /// Why bytes, or the parts of a mesh, are not a mesh.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MeshError {
-    #[error("not a mesh this version reads: PLY, OBJ, GLB expected")]
+    #[error("not a mesh this version reads: PLY, OBJ, STL, GLB, glTF or OFF expected")]
     UnknownFormat,
     #[error("{format}, {place}: {problem}")]
     Malformed { format: Format, place: Place, problem: String },
     #[error("{format}: {feature} cannot be read by this version; {advice}")]
     Unsupported { format: Format, feature: String, advice: &'static str },
+    #[error("{format}: its data are in the file “{name}”, which did not come with it; load them together")]
+    MissingCompanion { format: Format, name: String },
     #[error("no faces: {vertices} vertices and no polygon of three or more")]
     NoFaces { vertices: usize },
     #[error("more than {limit} {what}")]

@@ -1,6 +1,6 @@
 //! From a dropped file's bytes to a mesh: which format it is, and what the user should be told about it.
 
-use super::{Format, Mesh, MeshData, MeshError, gltf, obj, ply, text};
+use super::{FindCompanion, Format, Mesh, MeshData, MeshError, gltf, obj, off, ply, stl, text};
 
 /// A mesh and what was odd about its file.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,16 +17,31 @@ pub(super) struct Parsed {
     pub warnings: Vec<String>,
 }
 
+/// A file that is to be read, and a way to those beside it.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub file_name: &'a str,
+    /// Without a byte order mark.
+    pub bytes: &'a [u8],
+    pub find: FindCompanion<'a>,
+}
+
 /// Reads a mesh. The format is recognised by the content, and by the file's extension where the content does not tell.
 ///
-/// PLY and OBJ know no unit: their numbers are taken as they are, and [`Mesh::transformed`] brings them to millimetres
+/// `find` looks up the files that the mesh asks for (see [`super::companion_names`]): without its textures a mesh is loaded
+/// all the same, with a warning.
+///
+/// PLY, OBJ, STL and OFF know no unit: their numbers are taken as they are, and [`Mesh::transformed`] brings them to millimetres
 /// where the caller knows better. glTF is in metres and comes out in millimetres. Axes are kept as in the file.
-pub fn load(file_name: &str, bytes: &[u8]) -> Result<LoadedMesh, MeshError> {
+pub fn load(file_name: &str, bytes: &[u8], find: FindCompanion<'_>) -> Result<LoadedMesh, MeshError> {
     let bytes = text::without_byte_order_mark(bytes);
+    let source = Source { file_name, bytes, find };
     let Parsed { data, mut warnings } = match recognize(file_name, bytes).ok_or(MeshError::UnknownFormat)? {
-        Format::Ply => ply::parse(bytes)?,
-        Format::Obj => obj::parse(bytes)?,
-        Format::Gltf => gltf::parse(bytes)?,
+        Format::Ply => ply::parse(&source)?,
+        Format::Obj => obj::parse(&source)?,
+        Format::Stl => stl::parse(bytes)?,
+        Format::Gltf => gltf::parse(&source)?,
+        Format::Off => off::parse(bytes)?,
     };
     let has_file_normals = data.normals.is_some();
     let mesh = Mesh::new(data)?;
@@ -43,13 +58,15 @@ pub fn load(file_name: &str, bytes: &[u8]) -> Result<LoadedMesh, MeshError> {
     Ok(LoadedMesh { mesh, warnings })
 }
 
-fn recognize(file_name: &str, bytes: &[u8]) -> Option<Format> {
+pub(super) fn recognize(file_name: &str, bytes: &[u8]) -> Option<Format> {
     recognize_content(bytes).or_else(|| {
         let (_, extension) = file_name.rsplit_once('.')?;
         match extension.to_ascii_lowercase().as_str() {
             "ply" => Some(Format::Ply),
             "obj" => Some(Format::Obj),
+            "stl" => Some(Format::Stl),
             "glb" | "gltf" => Some(Format::Gltf),
+            "off" => Some(Format::Off),
             _ => None,
         }
     })
@@ -62,17 +79,23 @@ fn recognize_content(bytes: &[u8]) -> Option<Format> {
     if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..]) {
         return Some(Format::Ply);
     }
+    if stl::is_certain(bytes) {
+        return Some(Format::Stl);
+    }
     let trimmed = bytes.trim_ascii_start();
     if trimmed.starts_with(b"{") {
         // Our own scene files are JSON too; every glTF has an "asset", near its beginning or its end.
         return trimmed.windows(7).any(|window| window == b"\"asset\"").then_some(Format::Gltf);
     }
-    // OBJ has no magic number: its first words are comments, or one of these with something behind it.
+    // OBJ and OFF have no magic number: their first words are comments, or one of these with something behind it.
     let mut position = 0;
     let first_line = std::iter::from_fn(|| text::next_line(bytes, &mut position))
         .take(1000)
         .map(<[u8]>::trim_ascii)
         .find(|line| !line.is_empty() && !line.starts_with(b"#"))?;
+    if off::is_header(first_line) {
+        return Some(Format::Off);
+    }
     let mut words = text::words(first_line);
     let keyword = words.next()?;
     let is_obj = match keyword {
@@ -86,6 +109,7 @@ fn recognize_content(bytes: &[u8]) -> Option<Format> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::no_companions;
 
     #[test]
     fn content_goes_before_the_extension() {
@@ -94,15 +118,19 @@ mod tests {
         assert_eq!(recognize("mesh.txt", b"# a comment\n\nv 1 2 3\n"), Some(Format::Obj));
         assert_eq!(recognize("mesh.txt", b" {\"asset\": {}}"), Some(Format::Gltf));
         assert_eq!(recognize("MESH.OBJ", b"o thing\n"), Some(Format::Obj));
+        assert_eq!(recognize("mesh.txt", b"# a comment\nCOFF\n3 1 0\n"), Some(Format::Off));
+        assert_eq!(recognize("mesh", b"solid a\n facet normal 0 0 1\n"), Some(Format::Stl));
+        assert_eq!(recognize("notes.txt", b"solid advice\n"), None);
+        assert_eq!(recognize("part.STL", b"solid \x80"), Some(Format::Stl));
     }
 
     #[test]
     fn what_is_no_mesh_is_refused_in_words() {
         for (name, bytes) in
-            [("a.stl", b"solid a".as_slice()), ("scene.json", b"{\"photos\": []}"), ("", b"")]
+            [("a.step", b"solid a".as_slice()), ("scene.json", b"{\"photos\": []}"), ("", b"")]
         {
-            let error = load(name, bytes).unwrap_err();
-            assert_eq!(error.to_string(), "not a mesh this version reads: PLY, OBJ, GLB expected");
+            let error = load(name, bytes, &no_companions).unwrap_err();
+            assert_eq!(error, MeshError::UnknownFormat);
         }
     }
 }

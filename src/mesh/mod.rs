@@ -4,20 +4,25 @@
 
 mod bvh;
 mod coarse;
+mod companions;
 mod edges;
 mod error;
 mod gltf;
 mod load;
 mod normals;
 mod obj;
+mod off;
 mod paint;
 mod painted;
 mod ply;
 mod ray_cast;
+mod stl;
 #[cfg(test)]
 pub(crate) mod test_shapes;
 mod text;
+mod textures;
 mod weld;
+mod write;
 
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -25,12 +30,15 @@ use crate::math::{BoundingSphere, Bounds};
 
 pub use bvh::Bvh;
 pub use coarse::{CoarseMesh, coarse_mesh};
+pub use companions::{FindCompanion, companion_key, companion_names, no_companions};
 pub use edges::{MeshEdges, mesh_edges};
 pub use error::{Format, MeshError, Place};
 pub use load::{LoadedMesh, load};
 pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};
 pub use paint::{Material, Paint};
 pub use ray_cast::RayHit;
+pub use textures::MAX_TEXTURE_SIDE_PX;
+pub use write::write_ply;
 
 /// A mesh with more triangles, or more vertices, than this is refused: beyond it a browser tab runs out of memory.
 pub const MAX_TRIANGLES: usize = 50_000_000;
@@ -50,6 +58,16 @@ pub struct MeshData {
     pub colors: Option<Vec<[u8; 4]>>,
     /// Materials and textures.
     pub paint: Option<Paint>,
+}
+
+impl MeshData {
+    /// For formats that do not say how a texture and vertex colours go together: programs write both, one made from the
+    /// other, and the texture is the finer one.
+    fn prefer_texture(&mut self) {
+        if self.paint.as_ref().is_some_and(|paint| !paint.textures.is_empty()) {
+            self.colors = None;
+        }
+    }
 }
 
 /// A triangle mesh in the `object` frame, in millimetres, that everything above can draw and measure without checking.

@@ -1,5 +1,6 @@
 //! What a surface is painted with besides vertex colours: materials, textures, and where on them each triangle lies.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::Vec2;
@@ -29,6 +30,30 @@ pub struct Material {
     pub base_color: [u8; 4],
     /// An index into [`Paint::textures`].
     pub texture: Option<u32>,
+}
+
+/// Colours of faces, each of them made a material once.
+#[derive(Debug, Default)]
+pub(super) struct Palette {
+    number_of: BTreeMap<[u8; 4], u32>,
+    paint: Paint,
+}
+
+impl Palette {
+    /// Gives the next `triangles` triangles this colour.
+    pub fn add(&mut self, base_color: [u8; 4], triangles: usize) {
+        let materials = &mut self.paint.materials;
+        let number = *self.number_of.entry(base_color).or_insert_with(|| {
+            materials.push(Material { base_color, texture: None });
+            materials.len() as u32 - 1
+        });
+        let length = self.paint.material_of_triangle.len() + triangles;
+        self.paint.material_of_triangle.resize(length, number);
+    }
+
+    pub fn into_paint(self) -> Paint {
+        self.paint
+    }
 }
 
 impl Default for Material {
@@ -169,7 +194,7 @@ mod tests {
     #[test]
     fn colors_multiply_as_light_does() {
         assert_eq!(product([[255; 4], [1, 2, 3, 4]]), [1, 2, 3, 4]);
-        // Half the light is sRGB 188, a quarter is 137.
-        assert_eq!(product([[188, 255, 0, 255], [188, 188, 7, 255]]), [137, 188, 0, 255]);
+        // Half the light is sRGB 188, a quarter is 138.
+        assert_eq!(product([[188, 255, 0, 255], [188, 188, 7, 255]]), [138, 188, 0, 255]);
     }
 }

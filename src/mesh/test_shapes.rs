@@ -1,8 +1,36 @@
 //! Shapes for this crate's tests.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use glam::Vec3;
 
-use super::{Mesh, MeshData};
+use super::{Mesh, MeshData, companion_key};
+use crate::photo::{Pixels, png_rgba};
+
+/// Files beside a mesh.
+pub(crate) struct Folder(BTreeMap<String, Arc<[u8]>>);
+
+impl Folder {
+    pub fn of(files: &[(&str, &[u8])]) -> Self {
+        Self(files.iter().map(|(name, bytes)| (companion_key(name), Arc::from(*bytes))).collect())
+    }
+
+    pub fn find(&self, key: &str) -> Option<Arc<[u8]>> {
+        self.0.get(key).cloned()
+    }
+
+    pub fn without(mut self, key: &str) -> Self {
+        self.0.remove(key);
+        self
+    }
+}
+
+/// Two pixels by two: red, green, and below them blue, white.
+pub(crate) fn checker_png() -> Vec<u8> {
+    let rgba = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]].concat();
+    png_rgba(&Pixels { width: 2, height: 2, rgba }).expect("a small picture can be written")
+}
 
 /// The cube from −1 to 1, front sides out.
 pub(crate) fn cube() -> Mesh {

@@ -78,12 +78,21 @@ impl PhotoAsset {
     }
 }
 
+/// A file that a mesh's file asks for: a material library, a texture, a buffer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CompanionFile {
+    pub file_name: String,
+    pub bytes: Arc<[u8]>,
+}
+
 /// A mesh's file, parsed, with what picking needs.
 #[derive(Debug)]
 pub struct MeshAsset {
     pub file_name: String,
     pub sha256: Sha256,
     pub bytes: Arc<[u8]>,
+    /// Kept, so that the mesh looks the same when it is opened again.
+    pub companions: Vec<CompanionFile>,
     pub mesh: Mesh,
     pub bvh: Bvh,
 }
@@ -96,6 +105,7 @@ impl MeshAsset {
             file_name: self.file_name.clone(),
             sha256: self.sha256,
             bytes: self.bytes.clone(),
+            companions: self.companions.clone(),
             bvh: Bvh::build(&mesh),
             mesh,
         })
@@ -103,8 +113,10 @@ impl MeshAsset {
 }
 
 impl PartialEq for MeshAsset {
-    /// The content decides: the mesh follows from the bytes.
+    /// The content decides: the mesh follows from the bytes, and its looks from how many companions were there.
     fn eq(&self, other: &Self) -> bool {
-        self.sha256 == other.sha256 && self.file_name == other.file_name
+        self.sha256 == other.sha256
+            && self.file_name == other.file_name
+            && self.companions.len() == other.companions.len()
     }
 }

@@ -16,7 +16,7 @@ use glam::DMat4;
 use crate::math::{Intrinsics, Pose};
 
 pub use annotation::{Annotation, AnnotationState, PoseSource};
-pub use asset::{MeshAsset, PhotoAsset, Sha256};
+pub use asset::{CompanionFile, MeshAsset, PhotoAsset, Sha256};
 pub use color::{Rgb, object_color, reference_color};
 pub use look::{Layers, Look, OverlayMode, PhotoAdjustment};
 pub use placement::untouched_pose;

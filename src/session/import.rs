@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use glam::DMat4;
+
 use super::{Answer, CommandError, Effect, History, Look, Notice, Question, Session, Waiting};
 use crate::formats::{CameraFile, Document, Incoming, Outcome, PosesAs};
-use crate::scene::{CameraOrigin, MeshAsset, PhotoAsset, PhotoId, Scene};
+use crate::scene::{CameraOrigin, MeshAsset, ObjectId, PhotoAsset, PhotoId, Scene};
 
 /// The files of one drop, read.
 #[derive(Debug, Clone, Default)]
@@ -70,6 +72,7 @@ impl Session {
                 Some(id) => id,
                 None => self.scene.add_object(mesh.clone()),
             };
+            self.complete_mesh(id, mesh);
             self.selected = Some(id);
         }
         let waits_for_poses =
@@ -85,6 +88,22 @@ impl Session {
                 self.scene.place(photo, id, now_ms);
             }
         }
+    }
+
+    /// A mesh that came without its textures gets them when it is loaded again together with them.
+    fn complete_mesh(&mut self, id: ObjectId, again: &Arc<MeshAsset>) {
+        let Some(object) = self.scene.objects.iter_mut().find(|object| object.id == id) else { return };
+        if again.companions.len() <= object.mesh.companions.len() {
+            return;
+        }
+        object.mesh = if object.mesh_from_file == DMat4::IDENTITY {
+            again.clone()
+        } else {
+            match again.with_mesh_from_file(DMat4::IDENTITY, object.mesh_from_file) {
+                Ok(mesh) => Arc::new(mesh),
+                Err(_) => return,
+            }
+        };
     }
 
     /// A camera file is for the photos of its drop, else for the one that is shown, else for the ones to come.

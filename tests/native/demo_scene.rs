@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DVec3};
-use pinpose::formats::{NamedFile, classify, read_mesh, read_photo, read_workspace};
+use pinpose::formats::{FileWithCompanions, classify, read_mesh_with, read_photo, read_workspace};
 use pinpose::math::{Intrinsics, Pose};
 use pinpose::mesh::{self, Mesh};
 use pinpose::raster::{Mask, PixelRegion, RasterImage, RasterItem, rasterize};
@@ -102,7 +102,8 @@ fn model_infos() -> PerImage<ModelInfo> {
 
 fn load_mesh(name: &str) -> Mesh {
     let bytes = fs::read(demo_folder().join("bop/models").join(name)).unwrap();
-    let loaded = mesh::load(name, &bytes).unwrap();
+    let texture = |key: &str| fs::read(demo_folder().join("bop/models").join(key)).ok().map(Into::into);
+    let loaded = mesh::load(name, &bytes, &texture).unwrap();
     if name.ends_with("ply") {
         assert_eq!(loaded.warnings, Vec::<String>::new(), "{name}");
     }
@@ -403,14 +404,21 @@ fn open_example(bytes: &[u8]) -> Session {
     let workspace = read_workspace(bytes).unwrap();
     assert_eq!(workspace.document.name, "Example");
     let of_kind = |kind| {
-        workspace.files.iter().filter(move |file: &&NamedFile| classify(&file.name, &file.bytes) == kind)
+        workspace
+            .files
+            .iter()
+            .filter(move |entry: &&FileWithCompanions| classify(&entry.file.name, &entry.file.bytes) == kind)
     };
     let opening = Opening {
         photos: of_kind(pinpose::formats::FileKind::Photo)
-            .map(|file| read_photo(file).unwrap().0.into())
+            .map(|entry| read_photo(&entry.file).unwrap().0.into())
             .collect(),
         meshes: of_kind(pinpose::formats::FileKind::Mesh)
-            .map(|file| read_mesh(file).unwrap().0.into())
+            .map(|entry| {
+                let (mesh, warnings) = read_mesh_with(&entry.file, &entry.companions).unwrap();
+                assert_eq!(warnings, Vec::<String>::new());
+                mesh.into()
+            })
             .collect(),
         document: workspace.document.clone(),
         restored: true,

@@ -1,13 +1,15 @@
 //! Our own files: bit for bit there and back, as the schema says, and refused in words where they are not.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use pinpose::formats::{
-    DOCUMENT_SCHEMA, Keep, PosesAs, classify, parse_text_or_archive, read_document, read_workspace,
-    write_document, write_workspace,
+    DOCUMENT_SCHEMA, Keep, NamedFile, PosesAs, classify, parse_text_or_archive, read_document,
+    read_mesh_with, read_workspace, write_document, write_workspace,
 };
 use pinpose::math::Pose;
 use pinpose::scene::PoseSource;
-use pinpose::session::{Command, Opening, Session};
+use pinpose::session::{Batch, Command, Opening, Session};
 use proptest::prelude::*;
 
 use crate::support::{NOW_MS, drop_files, linemod_session, small_session, text_file};
@@ -41,6 +43,27 @@ proptest! {
 }
 
 #[test]
+fn a_texture_that_comes_later_is_taken_and_stays_with_its_mesh() {
+    let file = |name: &str, bytes: &[u8]| NamedFile { name: name.to_owned(), bytes: Arc::from(bytes) };
+    let mesh = file("m.obj", b"mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    let library = file("m.mtl", b"newmtl a\nKd 1 0 0\n");
+    let mut session = Session::default();
+    drop_files(&mut session, std::slice::from_ref(&mesh), None);
+    assert!(!session.scene().objects[0].mesh.mesh.has_colors());
+    let (complete, _) = read_mesh_with(&mesh, &[library]).unwrap();
+    let batch = Batch { meshes: vec![Arc::new(complete)], ..Batch::default() };
+    session.apply(Command::Import(Box::new(batch)), NOW_MS).unwrap();
+    assert_eq!(session.scene().objects.len(), 1);
+    assert!(session.scene().objects[0].mesh.mesh.has_colors());
+
+    let zip = write_workspace(&session.document(Keep::Everything), session.scene()).unwrap();
+    let workspace = read_workspace(&zip).unwrap();
+    assert_eq!(workspace.files.len(), 1);
+    let entry = &workspace.files[0];
+    assert_eq!((entry.file.name.as_str(), entry.companions[0].name.as_str()), ("m.obj", "m.mtl"));
+}
+
+#[test]
 fn linemod_survives_a_workspace() {
     let Some(session) = linemod_session() else { return };
     let document = session.document(Keep::Everything);
@@ -48,7 +71,8 @@ fn linemod_survives_a_workspace() {
     println!("workspace of ten photos and ten meshes: {} bytes", zip.len());
     let workspace = read_workspace(&zip).unwrap();
     assert_eq!(workspace.files.len(), 20);
-    let batch = crate::support::batch_of(&workspace.files, None);
+    let files: Vec<_> = workspace.files.into_iter().map(|entry| entry.file).collect();
+    let batch = crate::support::batch_of(&files, None);
     let mut opened = Session::default();
     let opening =
         Opening { document: workspace.document, photos: batch.photos, meshes: batch.meshes, restored: true };

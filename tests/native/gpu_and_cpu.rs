@@ -148,6 +148,7 @@ pub fn disc(radius_mm: f32) -> Arc<MeshAsset> {
         file_name: "disc".to_owned(),
         sha256: Sha256::of(b"disc"),
         bytes: Arc::from([]),
+        companions: Vec::new(),
         mesh,
         bvh,
     })

@@ -1,8 +1,10 @@
 //! Every mesh of the shared data loads, or is refused for a reason that is written down here.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pinpose::mesh::{self, LoadedMesh, MeshError};
@@ -29,6 +31,9 @@ const RIGHTLY_REFUSED: &[(&str, &str)] = &[
     ("ply_empty_header.ply", "no faces: 0 vertices"),
     ("ply_points_ascii.ply", "no faces: 8 vertices"),
     ("ply_points_bin.ply", "no faces: 8 vertices"),
+    ("models/empty.stl", "no faces: 0 vertices"),
+    ("stl_empty_ascii.stl", "no faces: 0 vertices"),
+    ("stl_empty_bin.stl", "no faces: 0 vertices"),
     ("points_ascii.ply", "no faces: 5 vertices"),
     ("points_ascii_with_lists.ply", "no faces: 5 vertices"),
     ("points_bin.ply", "no faces: 5 vertices"),
@@ -40,9 +45,6 @@ const RIGHTLY_REFUSED: &[(&str, &str)] = &[
     ("issue-140-zero-face-idx.obj", "line 16: the face's corner “0/0/0”"),
     // A vertex that is nowhere.
     ("test-nan.obj", "line 12: the vertex is at [NaN, NaN, NaN]"),
-    // Their bytes are in another file.
-    ("Mesh_PrimitiveMode_04.gltf", "“Mesh_PrimitiveMode_04.bin”"),
-    ("TestScene.gltf", "“TestScene.bin”"),
 ];
 
 fn mesh_files(folder: &Path) -> Vec<PathBuf> {
@@ -54,7 +56,7 @@ fn mesh_files(folder: &Path) -> Vec<PathBuf> {
             let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
             if path.is_dir() {
                 pending.push(path);
-            } else if ["ply", "obj", "glb", "gltf"].contains(&extension.as_str()) {
+            } else if ["ply", "obj", "stl", "glb", "gltf", "off"].contains(&extension.as_str()) {
                 files.push(path);
             }
         }
@@ -63,10 +65,21 @@ fn mesh_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+fn files_by_key(folder: &Path) -> BTreeMap<String, PathBuf> {
+    let entries =
+        fs::read_dir(folder).expect("the data can be listed").map(|entry| entry.expect("listed").path());
+    let files = entries.filter(|path| path.is_file());
+    files.map(|path| (mesh::companion_key(&path.to_string_lossy()), path)).collect()
+}
+
 fn load(path: &Path) -> Result<LoadedMesh, MeshError> {
     let bytes = fs::read(path).expect("the file can be read");
     let started = Instant::now();
-    let loaded = mesh::load(&path.file_name().unwrap_or_default().to_string_lossy(), &bytes);
+    let folder = path.parent().unwrap_or(path);
+    let beside = files_by_key(folder);
+    let find =
+        |key: &str| beside.get(key).map(|path| Arc::from(fs::read(path).expect("the file can be read")));
+    let loaded = mesh::load(&path.file_name().unwrap_or_default().to_string_lossy(), &bytes, &find);
     assert!(started.elapsed() < LONGEST_LOAD, "{} took {:?}", path.display(), started.elapsed());
     loaded
 }
@@ -94,6 +107,36 @@ fn each_file_of_the_corpus_loads_or_is_rightly_refused() {
         files.len()
     );
     assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn the_corpus_comes_with_its_looks() {
+    let Some(folder) = crate::data_folder("meshes_misc/trimesh/models") else { return };
+    // File, textures, materials; and the most vertices that the GPU is given for each of the file.
+    let expected = [
+        ("fuze.obj", 1, 2, 2.0),
+        ("fuze.ply", 1, 1, 2.0),
+        ("BoxTextured.glb", 1, 1, 1.0),
+        ("Duck.glb", 1, 1, 1.0),
+        ("ballA.off", 0, 0, 1.5),
+        ("comments.off", 0, 2, 3.0),
+        ("rgb_cube_with_primitives.gltf", 0, 1, 3.0),
+    ];
+    for (name, textures, least_materials, most_growth) in expected {
+        let LoadedMesh { mesh, warnings } = load(&folder.join(name)).unwrap();
+        let shading = mesh::shading_vertices(&mesh);
+        let growth = shading.vertices.len() as f64 / mesh.positions_mm().len() as f64;
+        let paint = mesh.paint().cloned().unwrap_or_default();
+        println!(
+            "{name}: {} textures, {} materials, {} groups, × {growth:.2}, {warnings:?}",
+            paint.textures.len(),
+            paint.materials.len(),
+            shading.groups.len()
+        );
+        assert_eq!(paint.textures.len(), textures, "{name}");
+        assert!(paint.materials.len() >= least_materials, "{name}: {:?}", paint.materials);
+        assert!(growth <= most_growth, "{name}: {growth}");
+    }
 }
 
 #[test]

@@ -186,6 +186,10 @@ def write_example(options, bop):
         for obj_id in (EXAMPLE_POSED, EXAMPLE_WAITING):
             parts.append(scratch / (names[obj_id].replace(" ", "_") + ".ply"))
             shutil.copy(bop / "models" / f"obj_{obj_id:06d}.ply", parts[-1])
+            texture = bop / "models" / f"obj_{obj_id:06d}.png"
+            if texture.exists():
+                parts.append(scratch / texture.name)
+                shutil.copy(texture, parts[-1])
         raw = scratch / "raw.zip"
         subprocess.run([options.pinpose, "convert", *map(str, parts), str(raw)], check=True)
         rewrite_example(raw, options.demo / "example.zip", bop, names)

@@ -8,7 +8,7 @@ mod wire;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::formats::{NamedFile, read_mesh, read_photo};
+use crate::formats::{NamedFile, kept, read_mesh_with, read_photo};
 use crate::mesh::{Bvh, Material, Mesh, MeshData, Paint};
 use crate::photo::Pixels;
 use crate::platform::Background;
@@ -35,7 +35,7 @@ pub enum Done {
 pub struct Jobs {
     background: Background,
     next_id: u64,
-    files: HashMap<u64, (JobKind, NamedFile)>,
+    files: HashMap<u64, (JobKind, NamedFile, Vec<NamedFile>)>,
 }
 
 impl Jobs {
@@ -48,14 +48,11 @@ impl Jobs {
         }
     }
 
-    pub fn submit(&mut self, kind: JobKind, file: NamedFile) -> u64 {
+    /// `companions` are the files that a mesh asks for.
+    pub fn submit(&mut self, kind: JobKind, file: NamedFile, companions: &[NamedFile]) -> u64 {
         self.next_id += 1;
-        let mut request = Writer::default();
-        request.byte(if kind == JobKind::Photo { 0 } else { 1 });
-        request.bytes(file.name.as_bytes());
-        request.bytes(&file.bytes);
-        self.background.submit(self.next_id, request.finish());
-        self.files.insert(self.next_id, (kind, file));
+        self.background.submit(self.next_id, write_request(kind, &file, companions));
+        self.files.insert(self.next_id, (kind, file, companions.to_vec()));
         self.next_id
     }
 
@@ -64,15 +61,40 @@ impl Jobs {
         let replies = self.background.poll().into_iter();
         let known = replies.filter_map(|(id, reply)| Some((id, self.files.remove(&id)?, reply)));
         known
-            .map(|(id, (kind, file), reply)| {
+            .map(|(id, (kind, file, companions), reply)| {
                 let done = match reply {
-                    Ok(bytes) => read_reply(kind, &file, &bytes),
+                    Ok(bytes) => read_reply(kind, &file, &companions, &bytes),
                     Err(crash) => Err(format!("reading it crashed ({crash}); please report this file")),
                 };
                 (id, file, done)
             })
             .collect()
     }
+}
+
+fn write_request(kind: JobKind, file: &NamedFile, companions: &[NamedFile]) -> Vec<u8> {
+    let mut request = Writer::default();
+    request.byte(if kind == JobKind::Photo { 0 } else { 1 });
+    for NamedFile { name, bytes } in std::iter::once(file).chain(companions) {
+        request.byte(1);
+        request.bytes(name.as_bytes());
+        request.bytes(bytes);
+    }
+    request.byte(0);
+    request.finish()
+}
+
+/// The kind of job, the file, and its companions.
+fn read_request(request: &[u8]) -> Option<(u8, NamedFile, Vec<NamedFile>)> {
+    let mut request = Reader::new(request);
+    let kind = request.byte()?;
+    let mut files = Vec::new();
+    while request.byte()? == 1 {
+        let name = String::from_utf8(request.bytes()?.to_vec()).ok()?;
+        files.push(NamedFile { name, bytes: Arc::from(request.bytes()?) });
+    }
+    let mut files = files.into_iter();
+    Some((kind, files.next()?, files.collect()))
 }
 
 /// Runs one job: in the worker, or on the other thread.
@@ -96,25 +118,27 @@ pub fn run_job(request: &[u8]) -> Vec<u8> {
 }
 
 fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
-    let mut request = Reader::new(request);
-    let kind = request.byte()?;
-    let name = String::from_utf8(request.bytes()?.to_vec()).ok()?;
-    let file = NamedFile { name, bytes: Arc::from(request.bytes()?) };
+    let (kind, file, companions) = read_request(request)?;
     Some(match kind {
         0 => read_photo(&file)
             .map(|(asset, pixels)| write_photo(&asset, &pixels))
             .map_err(|error| error.to_string()),
-        _ => read_mesh(&file)
+        _ => read_mesh_with(&file, &companions)
             .map(|(asset, warnings)| write_mesh(&asset, &warnings))
             .map_err(|error| error.to_string()),
     })
 }
 
-fn read_reply(kind: JobKind, file: &NamedFile, reply: &[u8]) -> Result<Done, String> {
+fn read_reply(
+    kind: JobKind,
+    file: &NamedFile,
+    companions: &[NamedFile],
+    reply: &[u8],
+) -> Result<Done, String> {
     let mut reader = Reader::new(reply);
     let done = match reader.byte() {
         Some(1) if kind == JobKind::Photo => read_photo_reply(file, &mut reader),
-        Some(1) => read_mesh_reply(file, &mut reader),
+        Some(1) => read_mesh_reply(file, companions, &mut reader),
         _ => {
             let message = reader.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned());
             return Err(message.unwrap_or_else(|| "the worker's reply was damaged".to_owned()));
@@ -197,7 +221,7 @@ fn read_paint(reader: &mut Reader<'_>) -> Option<Paint> {
     Some(Paint { corner_uvs, material_of_triangle, materials: materials.collect(), textures })
 }
 
-fn read_mesh_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
+fn read_mesh_reply(file: &NamedFile, companions: &[NamedFile], reader: &mut Reader<'_>) -> Option<Done> {
     let sha256 = read_hash(reader)?;
     let data = MeshData {
         positions_mm: reader.items()?,
@@ -212,6 +236,7 @@ fn read_mesh_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
         file_name: file.name.clone(),
         sha256,
         bytes: file.bytes.clone(),
+        companions: kept(companions),
         mesh: Mesh::new(data).ok()?,
         bvh,
     };
@@ -226,28 +251,33 @@ fn read_hash(reader: &mut Reader<'_>) -> Option<Sha256> {
 mod tests {
     use super::*;
 
-    fn run(kind: JobKind, name: &str, bytes: &[u8]) -> Result<Done, String> {
-        let file = NamedFile { name: name.to_owned(), bytes: Arc::from(bytes) };
-        let mut request = Writer::default();
-        request.byte(if kind == JobKind::Photo { 0 } else { 1 });
-        request.bytes(file.name.as_bytes());
-        request.bytes(&file.bytes);
-        read_reply(kind, &file, &run_job(&request.finish()))
+    fn file(name: &str, bytes: &[u8]) -> NamedFile {
+        NamedFile { name: name.to_owned(), bytes: Arc::from(bytes) }
+    }
+
+    fn run(kind: JobKind, file: &NamedFile, companions: &[NamedFile]) -> Result<Done, String> {
+        read_reply(kind, file, companions, &run_job(&write_request(kind, file, companions)))
     }
 
     #[test]
     fn a_mesh_survives_the_way_through_the_worker() {
-        let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
-        let Ok(Done::Mesh(asset, _)) = run(JobKind::Mesh, "corner.obj", obj) else { panic!("no mesh") };
-        let file = NamedFile { name: "corner.obj".to_owned(), bytes: Arc::from(&obj[..]) };
-        let (expected, _) = read_mesh(&file).unwrap();
-        assert_eq!(asset.mesh, expected.mesh);
+        let pixels = Pixels { width: 2, height: 1, rgba: vec![9, 8, 7, 255, 0, 0, 0, 255] };
+        let companions = [
+            file("a.mtl", b"newmtl a\nKd 1 0 0\nnewmtl b\nmap_Kd b.png\n"),
+            file("B.png", &crate::photo::png_rgba(&pixels).unwrap()),
+        ];
+        let obj = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0.5 0\nusemtl b\nf 1/1 2 3\nusemtl a\nf 1 2 4\n";
+        let obj = file("corner.obj", obj);
+        let Ok(Done::Mesh(asset, _)) = run(JobKind::Mesh, &obj, &companions) else { panic!("no mesh") };
+        let (expected, _) = read_mesh_with(&obj, &companions).unwrap();
+        assert_eq!((&asset.mesh, &asset.companions), (&expected.mesh, &expected.companions));
+        assert_eq!(*asset.mesh.paint().unwrap().textures[0], pixels);
         assert_eq!(asset.bvh.to_parts(), expected.bvh.to_parts());
     }
 
     #[test]
     fn errors_come_back_in_words() {
-        let error = run(JobKind::Photo, "a.png", b"nothing").err().unwrap();
+        let error = run(JobKind::Photo, &file("a.png", b"nothing"), &[]).err().unwrap();
         assert!(error.contains("PNG or JPEG"), "{error}");
         assert!(run_job(&[1, 2, 3]).len() > 1);
     }

@@ -74,6 +74,27 @@ impl<'a> Array<'a> {
 
     /// Items of at least `N` numbers, integers made 0..=1 where the file says so.
     pub fn scaled_floats<const N: usize>(&self, what: &str) -> Result<Vec<[f32; N]>, MeshError> {
+        let item = self.item_reader(what)?;
+        // The last item may be shorter than the stride: `open` saw that it is whole.
+        Ok(self.bytes.chunks(self.stride).take(self.count).map(item).collect())
+    }
+
+    /// Single items, as [`Self::scaled_floats`] would give them: many primitives may share one large array.
+    pub fn into_lookup<const N: usize>(
+        self,
+        what: &str,
+    ) -> Result<impl Fn(u32) -> Option<[f32; N]> + use<'a, N>, MeshError> {
+        let read = self.item_reader(what)?;
+        Ok(move |number| {
+            let number = usize::try_from(number).ok().filter(|&number| number < self.count)?;
+            self.bytes.get(number * self.stride..).map(&read)
+        })
+    }
+
+    fn item_reader<const N: usize>(
+        &self,
+        what: &str,
+    ) -> Result<impl Fn(&[u8]) -> [f32; N] + use<N>, MeshError> {
         if self.components < N {
             return Err(self.wrong(what, &format!("{N} numbers each")));
         }
@@ -84,16 +105,14 @@ impl<'a> Array<'a> {
             (false, ComponentType::F32) => 1.0,
             _ => return Err(self.wrong(what, "floats or normalised unsigned integers")),
         };
-        let item = |item: &[u8]| -> [f32; N] {
+        Ok(move |item: &[u8]| -> [f32; N] {
             std::array::from_fn(|i| match item.get(i * size..(i + 1) * size) {
                 Some(&[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
                 Some(&[a, b]) => f32::from(u16::from_le_bytes([a, b])) * scale,
                 Some(&[a]) => f32::from(a) * scale,
                 _ => 0.0,
             })
-        };
-        // The last item may be shorter than the stride: `open` saw that it is whole.
-        Ok(self.bytes.chunks(self.stride).take(self.count).map(item).collect())
+        })
     }
 
     /// Vertex numbers.
@@ -127,9 +146,9 @@ fn missing_view(root: &json::Root, number: usize) -> MeshError {
 }
 
 /// The bytes of a buffer view and its stride.
-fn view_bytes<'a>(gltf: &'a Gltf<'_>, number: usize) -> Option<(&'a [u8], Option<usize>)> {
+pub(super) fn view_bytes<'a>(gltf: &'a Gltf<'_>, number: usize) -> Option<(&'a [u8], Option<usize>)> {
     let view = gltf.root.buffer_views.get(number)?;
-    let buffer = gltf.buffers.get(view.buffer.value())?;
+    let buffer = gltf.buffers.get(view.buffer.value())?.bytes();
     let offset = usize::try_from(view.byte_offset.unwrap_or_default().0).ok()?;
     let length = usize::try_from(view.byte_length.0).ok()?;
     let bytes = buffer.get(offset..)?.get(..length)?;

@@ -1,11 +1,30 @@
-//! Where a glTF's bytes are: the chunks of a GLB, and buffers within the JSON.
+//! Where a glTF's bytes are: the chunks of a GLB, within the JSON, or in files beside it.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use ::gltf::json;
 
 use super::{malformed, unsupported};
-use crate::mesh::{Format, MeshError, Place};
+use crate::mesh::companions::{companion_key, percent_decoded};
+use crate::mesh::textures::shown_name;
+use crate::mesh::{FindCompanion, Format, MeshError, Place};
+
+/// The bytes of a buffer, wherever they are kept.
+pub(super) enum Buffer<'a> {
+    Chunk(&'a [u8]),
+    Decoded(Vec<u8>),
+    File(Arc<[u8]>),
+}
+
+impl Buffer<'_> {
+    pub fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Chunk(bytes) => bytes,
+            Self::Decoded(bytes) => bytes,
+            Self::File(bytes) => bytes,
+        }
+    }
+}
 
 /// The JSON and the binary chunk of a GLB; a file that is no GLB is all JSON.
 pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshError> {
@@ -48,33 +67,38 @@ fn read_u32(bytes: &[u8]) -> Option<u32> {
     bytes.first_chunk().map(|chunk| u32::from_le_bytes(*chunk))
 }
 
-/// The bytes of each buffer: the GLB's own chunk, or base64 within the JSON.
+/// The bytes of each buffer: the GLB's own chunk, base64 within the JSON, or a file.
 pub(super) fn buffers<'a>(
     root: &json::Root,
     binary_chunk: Option<&'a [u8]>,
-) -> Result<Vec<Cow<'a, [u8]>>, MeshError> {
+    find: FindCompanion<'_>,
+) -> Result<Vec<Buffer<'a>>, MeshError> {
     root.buffers
         .iter()
         .enumerate()
         .map(|(number, buffer)| match &buffer.uri {
             None => binary_chunk
                 .filter(|_| number == 0)
-                .map(Cow::Borrowed)
+                .map(Buffer::Chunk)
                 .ok_or_else(|| malformed(format!("buffer {number}"), "it has no bytes in this file")),
-            Some(uri) => embedded_buffer(uri, number).map(Cow::Owned),
+            Some(uri) if uri.starts_with("data:") => data_uri(uri)
+                .map(Buffer::Decoded)
+                .ok_or_else(|| malformed(format!("buffer {number}"), "expected its data URI to be base64")),
+            Some(uri) => buffer_file(uri, find),
         })
         .collect()
 }
 
-fn embedded_buffer(uri: &str, number: usize) -> Result<Vec<u8>, MeshError> {
-    let Some(data) = uri.strip_prefix("data:") else {
-        let name: String = uri.chars().take(80).collect();
-        let advice = "export the mesh as one GLB file, or with embedded buffers";
-        return Err(unsupported(format!("the separate file “{}”", name.escape_debug()), advice));
-    };
-    data.split_once(";base64,")
-        .and_then(|(_, text)| decode_base64(text.as_bytes()))
-        .ok_or_else(|| malformed(format!("buffer {number}"), "expected its data URI to be base64"))
+fn buffer_file<'a>(uri: &str, find: FindCompanion<'_>) -> Result<Buffer<'a>, MeshError> {
+    let name = percent_decoded(uri);
+    let missing = || MeshError::MissingCompanion { format: Format::Gltf, name: shown_name(&name) };
+    find(&companion_key(&name)).map(Buffer::File).ok_or_else(missing)
+}
+
+/// What a base64 data URI holds.
+pub(super) fn data_uri(uri: &str) -> Option<Vec<u8>> {
+    let (_, text) = uri.strip_prefix("data:")?.split_once(";base64,")?;
+    decode_base64(text.as_bytes())
 }
 
 fn decode_base64(text: &[u8]) -> Option<Vec<u8>> {

@@ -1,33 +1,48 @@
-//! glTF 2.0, as GLB or as self-contained JSON: the scene's triangles, flattened into one mesh in millimetres.
+//! glTF 2.0, as GLB or as JSON: the scene's triangles, flattened into one mesh in millimetres.
 //!
 //! Only the schema comes from the `gltf` crate. Its checked `Document` panics on some broken files and refuses good ones
 //! that lack optional numbers, so every index, type and byte range is checked here before it is used.
 
 mod accessor;
 mod container;
+mod materials;
 mod scene;
 #[cfg(test)]
 mod tests;
 
 use ::gltf::json;
 
-use super::load::Parsed;
+use super::companions::percent_decoded;
+use super::load::{Parsed, Source};
 use super::{Format, MeshError, Place};
 
 /// A document and the bytes of its buffers.
 struct Gltf<'a> {
     root: json::Root,
-    buffers: Vec<std::borrow::Cow<'a, [u8]>>,
+    buffers: Vec<container::Buffer<'a>>,
 }
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, MeshError> {
+pub(super) fn parse(source: &Source<'_>) -> Result<Parsed, MeshError> {
+    let (root, binary_chunk) = open(source.bytes)?;
+    refuse_extensions(&root)?;
+    let buffers = container::buffers(&root, binary_chunk, source.find)?;
+    scene::flatten(&Gltf { root, buffers }, source.find)
+}
+
+/// The buffers and images that are files of their own.
+pub(super) fn companion_names(source: &Source<'_>) -> Vec<String> {
+    let Ok((root, _)) = open(source.bytes) else { return Vec::new() };
+    let buffers = root.buffers.iter().map(|buffer| &buffer.uri);
+    let uris = buffers.chain(root.images.iter().map(|image| &image.uri)).flatten();
+    uris.filter(|uri| !uri.starts_with("data:")).map(|uri| percent_decoded(uri)).collect()
+}
+
+fn open(bytes: &[u8]) -> Result<(json::Root, Option<&[u8]>), MeshError> {
     let (json_bytes, binary_chunk) = container::split(bytes)?;
-    let root: json::Root = json::deserialize::from_slice(json_bytes).map_err(|error| {
+    let root = json::deserialize::from_slice(json_bytes).map_err(|error| {
         malformed(format!("JSON line {} column {}", error.line(), error.column()), error.to_string())
     })?;
-    refuse_extensions(&root)?;
-    let buffers = container::buffers(&root, binary_chunk)?;
-    scene::flatten(&Gltf { root, buffers })
+    Ok((root, binary_chunk))
 }
 
 /// Extensions of materials, textures and lights leave the shape alone; any other that a file *requires* changes what its

@@ -3,19 +3,21 @@
 use std::collections::BTreeMap;
 
 use ::gltf::json;
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 use json::mesh::{Mode, Primitive, Semantic};
 use json::validation::Checked;
 
 use super::accessor::Array;
+use super::materials::{Look, TextureMap};
 use super::{Gltf, malformed};
 use crate::mesh::load::Parsed;
-use crate::mesh::{MAX_TRIANGLES, MAX_VERTICES, MeshData, MeshError};
+use crate::mesh::paint::srgb_from_linear;
+use crate::mesh::{FindCompanion, MAX_TRIANGLES, MAX_VERTICES, MeshData, MeshError};
 
 const MM_PER_METRE: f64 = 1000.0;
 
-pub(super) fn flatten(gltf: &Gltf<'_>) -> Result<Parsed, MeshError> {
-    let mut gathered = Gathered::default();
+pub(super) fn flatten(gltf: &Gltf<'_>, find: FindCompanion<'_>) -> Result<Parsed, MeshError> {
+    let mut gathered = Gathered::new(Look::new(gltf, find));
     let mut has_skins = false;
     let mut is_visited = vec![false; gltf.root.nodes.len()];
     // A stack of nodes with the transform of their parent, so that a deep tree cannot overflow the machine's own.
@@ -48,7 +50,8 @@ pub(super) fn flatten(gltf: &Gltf<'_>) -> Result<Parsed, MeshError> {
     if has_skins {
         warnings.push("A skin is not applied: the mesh is in its rest shape.".to_owned());
     }
-    Ok(Parsed { data: gathered.into_data(), warnings })
+    let data = gathered.into_data(&mut warnings);
+    Ok(Parsed { data, warnings })
 }
 
 /// The nodes of the default scene, or the first; in a file without scenes, those that are nobody's children.
@@ -88,8 +91,8 @@ struct VertexSource {
     colors: Option<usize>,
 }
 
-#[derive(Debug, Default)]
-struct Gathered {
+struct Gathered<'a> {
+    look: Look<'a>,
     data: MeshData,
     normals: Vec<Vec3>,
     colors: Vec<[u8; 4]>,
@@ -97,7 +100,18 @@ struct Gathered {
     has_colors: bool,
 }
 
-impl Gathered {
+impl<'a> Gathered<'a> {
+    fn new(look: Look<'a>) -> Self {
+        Self {
+            look,
+            data: MeshData::default(),
+            normals: Vec::new(),
+            colors: Vec::new(),
+            lacks_normals: false,
+            has_colors: false,
+        }
+    }
+
     fn add_mesh(
         &mut self,
         gltf: &Gltf<'_>,
@@ -186,15 +200,21 @@ impl Gathered {
             return Err(MeshError::TooLarge { what: "triangles", limit: MAX_TRIANGLES });
         }
         let first_vertex = first_vertex as u32;
-        self.data.triangles.extend(triangles_of(mode, &corners).map(|[a, b, c]| {
-            let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
-            [a, b, c].map(|index| index + first_vertex)
-        }));
+        let front_outside = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+        let triangles = || triangles_of(mode, &corners).map(front_outside);
+        let map = self.look.begin_primitive(gltf, primitive.material.map(|material| material.value()));
+        if let Some(map) = map {
+            let uv = uv_lookup(gltf, primitive, &map)?;
+            self.look.add_uvs(triangles().map(|corners| corners.map(&uv)));
+        }
+        self.data.triangles.extend(triangles().map(|corners| corners.map(|index| index + first_vertex)));
+        self.look.end_primitive(self.data.triangles.len());
         Ok(())
     }
 
-    fn into_data(self) -> MeshData {
+    fn into_data(self, warnings: &mut Vec<String>) -> MeshData {
         MeshData {
+            paint: self.look.into_paint(warnings),
             normals: (!self.lacks_normals).then_some(self.normals),
             colors: self.has_colors.then_some(self.colors),
             ..self.data
@@ -209,6 +229,20 @@ fn vertex_source(primitive: &Primitive) -> Option<VertexSource> {
         normals: attribute(Semantic::Normals),
         colors: attribute(Semantic::Colors(0)),
     })
+}
+
+/// Where the vertices of a primitive lie on its texture; at its corner, where the file does not say.
+fn uv_lookup<'a>(
+    gltf: &'a Gltf<'_>,
+    primitive: &Primitive,
+    map: &'a TextureMap,
+) -> Result<Box<dyn Fn(u32) -> Vec2 + 'a>, MeshError> {
+    let semantic = Checked::Valid(Semantic::TexCoords(map.set));
+    let Some(accessor) = primitive.attributes.get(&semantic) else {
+        return Ok(Box::new(|_| Vec2::ZERO));
+    };
+    let lookup = Array::open(gltf, accessor.value())?.into_lookup::<2>("texture coordinates")?;
+    Ok(Box::new(move |vertex| lookup(vertex).map_or(Vec2::ZERO, |uv| map.apply(Vec2::from_array(uv)))))
 }
 
 /// Strips and fans as single triangles, all with the front on the same side.
@@ -237,9 +271,4 @@ fn srgb_colors(array: &Array<'_>) -> Result<Vec<[u8; 4]>, MeshError> {
             [byte(srgb_from_linear(r)), byte(srgb_from_linear(g)), byte(srgb_from_linear(b)), byte(alpha)]
         })
         .collect())
-}
-
-/// The transfer function of IEC 61966-2-1.
-fn srgb_from_linear(value: f32) -> f32 {
-    if value <= 0.003_130_8 { value * 12.92 } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
 }

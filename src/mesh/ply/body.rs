@@ -1,14 +1,16 @@
 //! The data of a PLY file, element by element.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::header::{Element, Encoding, Header, Kind, Scalar};
+use super::look::{FaceColors, Look};
 use super::malformed;
 use super::values::{Ascii, Binary, Values};
 use crate::mesh::load::Parsed;
 use crate::mesh::{Format, MAX_TRIANGLES, MAX_VERTICES, MeshError};
 
-pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<Parsed, MeshError> {
+/// The mesh without its paint, and what the paint is made of.
+pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<(Parsed, Look), MeshError> {
     match header.encoding {
         Encoding::Ascii => read_elements(header, Ascii::new(bytes, header.body_byte, header.body_line)),
         Encoding::LittleEndian => read_elements(header, Binary::<false>::new(bytes, header.body_byte)),
@@ -16,8 +18,8 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<Parsed, MeshError> {
     }
 }
 
-fn read_elements(header: &Header, mut values: impl Values) -> Result<Parsed, MeshError> {
-    let mut parsed = Parsed::default();
+fn read_elements(header: &Header, mut values: impl Values) -> Result<(Parsed, Look), MeshError> {
+    let (mut parsed, mut look) = (Parsed::default(), Look::default());
     let vertex_count = header.element("vertex").map_or(0, |vertex| vertex.count);
     if header.element("tristrips").is_some() {
         let feature = "element “tristrips”".to_owned();
@@ -31,12 +33,12 @@ fn read_elements(header: &Header, mut values: impl Values) -> Result<Parsed, Mes
     for element in &header.elements {
         check_size(element, &values)?;
         match element.name.as_str() {
-            "vertex" => read_vertices(element, &mut values, &mut parsed)?,
-            "face" => read_faces(element, &mut values, vertex_count, &mut parsed)?,
+            "vertex" => read_vertices(element, &mut values, &mut parsed, &mut look)?,
+            "face" => read_faces(element, &mut values, vertex_count, &mut parsed, &mut look)?,
             _ => skip_element(element, &mut values)?,
         }
     }
-    Ok(parsed)
+    Ok((parsed, look))
 }
 
 /// Refuses an element that the rest of the file cannot hold, before anything is allocated for it.
@@ -59,8 +61,8 @@ fn check_size(element: &Element, values: &impl Values) -> Result<(), MeshError> 
     Ok(())
 }
 
-/// What a row of the vertex element is sorted into: position, normal, colour, and the rest.
-const SLOT_NAMES: [&[&str]; 10] = [
+/// What a row of the vertex element is sorted into: position, normal, colour, texture coordinate, and the rest.
+const SLOT_NAMES: [&[&str]; 12] = [
     &["x"],
     &["y"],
     &["z"],
@@ -71,10 +73,17 @@ const SLOT_NAMES: [&[&str]; 10] = [
     &["green", "diffuse_green", "g"],
     &["blue", "diffuse_blue", "b"],
     &["alpha", "diffuse_alpha", "a"],
+    &["texture_u", "s", "u"],
+    &["texture_v", "t", "v"],
 ];
 const UNUSED_SLOT: usize = SLOT_NAMES.len();
 
-fn read_vertices(element: &Element, values: &mut impl Values, parsed: &mut Parsed) -> Result<(), MeshError> {
+fn read_vertices(
+    element: &Element,
+    values: &mut impl Values,
+    parsed: &mut Parsed,
+    look: &mut Look,
+) -> Result<(), MeshError> {
     let found = SLOT_NAMES.map(|names| scalar_property(element, names));
     if found[..3].contains(&None) {
         return Err(malformed(values.place(), "element “vertex” lacks one of the properties x, y, z"));
@@ -90,11 +99,13 @@ fn read_vertices(element: &Element, values: &mut impl Values, parsed: &mut Parse
     }
     let has_normals = !found[3..6].contains(&None);
     let has_colors = !found[6..9].contains(&None);
+    let has_uvs = !found[10..12].contains(&None);
     let color_scale = found.map(|property| property.map_or(1.0, |(_, scalar)| byte_scale(scalar)));
 
     let mut positions_mm = Vec::with_capacity(element.count);
     let mut normals = Vec::with_capacity(if has_normals { element.count } else { 0 });
     let mut colors = Vec::with_capacity(if has_colors { element.count } else { 0 });
+    let mut uvs = Vec::with_capacity(if has_uvs { element.count } else { 0 });
     let mut row = [0.0; SLOT_NAMES.len() + 1];
     row[9] = 255.0 / color_scale[9];
     let mut longer_rows = 0_usize;
@@ -113,17 +124,21 @@ fn read_vertices(element: &Element, values: &mut impl Values, parsed: &mut Parse
         if has_colors {
             colors.push([6, 7, 8, 9].map(|slot: usize| (row[slot] * color_scale[slot]).round() as u8));
         }
+        if has_uvs {
+            uvs.push(Vec2::new(row[10] as f32, row[11] as f32));
+        }
     }
     parsed.warnings.extend(warn_of_longer_rows(element, longer_rows));
     let data = &mut parsed.data;
     data.positions_mm = positions_mm;
     data.normals = has_normals.then_some(normals);
     data.colors = has_colors.then_some(colors);
+    look.vertex_uvs = uvs;
     Ok(())
 }
 
 /// The number and type of the first property that bears one of these names and is no list.
-fn scalar_property(element: &Element, names: &[&str]) -> Option<(usize, Scalar)> {
+pub(super) fn scalar_property(element: &Element, names: &[&str]) -> Option<(usize, Scalar)> {
     let number = element.property(names)?;
     match element.properties[number].kind {
         Kind::Scalar(scalar) => Some((number, scalar)),
@@ -132,7 +147,7 @@ fn scalar_property(element: &Element, names: &[&str]) -> Option<(usize, Scalar)>
 }
 
 /// What takes a colour of this type to 0..=255: floats run from 0 to 1, integers over their range.
-fn byte_scale(scalar: Scalar) -> f64 {
+pub(super) fn byte_scale(scalar: Scalar) -> f64 {
     match scalar {
         Scalar::F32 | Scalar::F64 => 255.0,
         Scalar::I16 | Scalar::U16 => 1.0 / 257.0,
@@ -145,6 +160,7 @@ fn read_faces(
     values: &mut impl Values,
     vertex_count: usize,
     parsed: &mut Parsed,
+    look: &mut Look,
 ) -> Result<(), MeshError> {
     let indices = element
         .property(&["vertex_indices", "vertex_index"])
@@ -152,11 +168,20 @@ fn read_faces(
         .ok_or_else(|| malformed(values.place(), "element “face” lacks a list “vertex_indices”"))?;
     let triangles = &mut parsed.data.triangles;
     triangles.reserve(element.count.min(MAX_TRIANGLES));
+    let texture_coordinates = element.property(&["texcoord", "texture_coordinates"]);
+    let mut face_colors = FaceColors::new(element);
     let (mut small_faces, mut longer_rows) = (0_usize, 0_usize);
     for _ in 0..element.count {
+        let triangles_before = triangles.len();
+        look.begin_face();
         for (number, property) in element.properties.iter().enumerate() {
             match property.kind {
-                Kind::Scalar(scalar) => drop(values.number(scalar)?),
+                Kind::Scalar(scalar) => face_colors.take(number, values.number(scalar)?),
+                Kind::List { count, item } if Some(number) == texture_coordinates => {
+                    for _ in 0..values.list_length(count, item)? {
+                        look.face_values.push(values.number(item)? as f32);
+                    }
+                }
                 Kind::List { count, item } if number == indices => {
                     let corners = values.list_length(count, item)?;
                     small_faces += usize::from(corners < 3);
@@ -166,7 +191,10 @@ fn read_faces(
             }
         }
         longer_rows += usize::from(values.end_row());
+        look.end_face(triangles_before, triangles.len());
+        face_colors.end_face(triangles.len() - triangles_before);
     }
+    look.set_face_colors(face_colors);
     parsed.warnings.extend(warn_of_longer_rows(element, longer_rows));
     if small_faces > 0 {
         parsed.warnings.push(format!("{small_faces} faces have fewer than three corners and are left out."));

@@ -46,6 +46,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// What stands behind each `comment TextureFile`.
+    pub texture_files: Vec<String>,
     /// Where the data begin.
     pub body_byte: usize,
     pub body_line: usize,
@@ -100,6 +102,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, MeshError> {
     let lines_end_in_cr = bytes.get(3) == Some(&b'\r') && bytes.get(4) != Some(&b'\n');
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut texture_files = Vec::new();
     loop {
         line_number += 1;
         let place = Place::Line(line_number);
@@ -109,6 +112,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, MeshError> {
         };
         let words: Vec<&[u8]> = words(line).collect();
         match words.as_slice() {
+            [b"comment", b"TextureFile", _, ..] => texture_files.extend(texture_file(line)),
             [] | [b"comment" | b"obj_info", ..] => {}
             [b"format", name, ..] => encoding = Some(parse_encoding(name, place)?),
             [b"element", name, count] => elements.push(parse_element(name, count, &elements, place)?),
@@ -121,7 +125,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, MeshError> {
             [b"end_header"] => {
                 let encoding = encoding.ok_or_else(|| malformed(place, "the header has no “format” line"))?;
                 let body_byte = if lines_end_in_cr { line_start + line.len() + 1 } else { position };
-                return Ok(Header { encoding, elements, body_byte, body_line: line_number + 1 });
+                let body_line = line_number + 1;
+                return Ok(Header { encoding, elements, texture_files, body_byte, body_line });
             }
             _ => {
                 let expected = "expected format, comment, element, property or end_header";
@@ -129,6 +134,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, MeshError> {
             }
         }
     }
+}
+
+/// The name may hold spaces.
+fn texture_file(line: &[u8]) -> Option<String> {
+    let line = String::from_utf8_lossy(line);
+    line.split_once("TextureFile").map(|(_, name)| name.trim().to_owned())
 }
 
 fn parse_encoding(name: &[u8], place: Place) -> Result<Encoding, MeshError> {

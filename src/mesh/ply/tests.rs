@@ -1,7 +1,14 @@
 use proptest::prelude::*;
 
-use super::parse;
-use crate::mesh::load;
+use glam::Vec2;
+
+use crate::mesh::load::{Parsed, Source};
+use crate::mesh::test_shapes::{Folder, checker_png};
+use crate::mesh::{LoadedMesh, MeshError, companion_names, load, no_companions};
+
+fn parse(bytes: &[u8]) -> Result<Parsed, MeshError> {
+    super::parse(&Source { file_name: "a.ply", bytes, find: &no_companions })
+}
 
 /// A small mesh and how to write it as PLY.
 #[derive(Debug, Clone)]
@@ -107,7 +114,9 @@ impl Sample {
         } else {
             [self.vertex_header(), self.face_header()]
         };
-        let header = format!("ply\nformat {name} 1.0\ncomment a comment\n{first}{second}end_header\n");
+        let header = format!(
+            "ply\nformat {name} 1.0\ncomment a comment\ncomment TextureFile t.png\n{first}{second}end_header\n"
+        );
         let mut writer = Writer { encoding, bytes: header.into_bytes() };
         if self.is_odd {
             self.write_faces(&mut writer);
@@ -163,6 +172,7 @@ proptest! {
         kept in any::<prop::sample::Index>(),
         is_cut in any::<bool>(),
     ) {
+        let checker: std::sync::Arc<[u8]> = checker_png().into();
         for encoding in ENCODINGS {
             let mut bytes = sample.write(encoding);
             for (at, byte) in &flips {
@@ -172,7 +182,7 @@ proptest! {
             if is_cut {
                 bytes.truncate(kept.index(bytes.len()));
             }
-            let _ = load("broken.ply", &bytes);
+            let _ = load("broken.ply", &bytes, &|_| Some(checker.clone()));
         }
     }
 }
@@ -236,4 +246,69 @@ fn a_boastful_header_is_refused_before_anything_is_allocated() {
     let list = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\n\
                 property uchar z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n\0\0\0~~~~";
     assert!(message(list).contains("a list of"), "{}", message(list));
+}
+
+const SQUARE: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+fn square(header: &str, faces: &str) -> String {
+    let vertices =
+        VERTICES.replace("vertex 3", "vertex 4").replace("1.0\n", "1.0\ncomment TextureFile  my tex.PNG \n");
+    format!(
+        "{vertices}element face 1\nproperty list uchar int vertex_indices\n{header}end_header\n{SQUARE}{faces}\n"
+    )
+}
+
+fn load_beside_texture(text: &str) -> LoadedMesh {
+    let folder = Folder::of(&[("My Tex.png", &checker_png())]);
+    load("a.ply", text.as_bytes(), &|key| folder.find(key)).unwrap()
+}
+
+#[test]
+fn corners_of_faces_have_texture_coordinates() {
+    let text = square("property list uchar float texcoord\n", "4 0 1 2 3 8 0 0 1 0 1 1 0 1");
+    let LoadedMesh { mesh, warnings } = load_beside_texture(&text);
+    assert_eq!(warnings, Vec::<String>::new());
+    let paint = mesh.paint().unwrap();
+    // v is up in the file.
+    let [low_left, low_right, top_right, top_left] = [Vec2::Y, Vec2::ONE, Vec2::X, Vec2::ZERO];
+    assert_eq!(paint.corner_uvs, [[low_left, low_right, top_right], [low_left, top_right, top_left]]);
+    assert_eq!((paint.textures.len(), paint.textures[0].width), (1, 2));
+    assert_eq!(companion_names("a.ply", text.as_bytes(), &no_companions), ["my tex.png"]);
+}
+
+#[test]
+fn vertices_have_texture_coordinates_by_three_names() {
+    for (u, v) in [("texture_u", "texture_v"), ("s", "t"), ("u", "v")] {
+        let uvs = format!(
+            "property float z\nproperty float {u}\nproperty float {v}\nproperty uchar red\n\
+                           property uchar green\nproperty uchar blue\n"
+        );
+        let text = format!(
+            "{VERTICES}element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+             0 0 0 0.25 1 9 9 9\n1 0 0 0 0 9 9 9\n0 1 0 1 nan 9 9 9\n3 0 1 2\n"
+        )
+        .replace("property float z\n", &uvs);
+        let mesh = load_beside_texture(&text.replace("1.0\n", "1.0\ncomment TextureFile my tex.png\n")).mesh;
+        assert_eq!(mesh.paint().unwrap().corner_uvs, [[Vec2::new(0.25, 0.0), Vec2::Y, Vec2::ZERO]]);
+        assert_eq!(mesh.colors(), None);
+        let alone = load("a.ply", text.as_bytes(), &no_companions).unwrap();
+        assert_eq!((alone.mesh.paint(), alone.mesh.has_colors()), (None, true));
+    }
+}
+
+#[test]
+fn a_missing_texture_is_one_warning() {
+    let text = square("property list uchar float texcoord\n", "4 0 1 2 3 2 0 0");
+    let LoadedMesh { mesh, warnings } = load("a.ply", text.as_bytes(), &no_companions).unwrap();
+    assert!(warnings.len() == 1 && warnings[0].contains("“my tex.PNG”"), "{warnings:?}");
+    assert!(!mesh.has_colors());
+}
+
+#[test]
+fn faces_have_colors() {
+    let text =
+        square("property uchar red\nproperty uchar green\nproperty uchar blue\n", "4 0 1 2 3 255 128 0");
+    let mesh = load("a.ply", text.as_bytes(), &no_companions).unwrap().mesh;
+    assert_eq!(mesh.paint().unwrap().materials[0].base_color, [255, 128, 0, 255]);
+    assert_eq!(mesh.paint().unwrap().material_of_triangle, [0, 0]);
 }

@@ -255,7 +255,8 @@ struct Sphere {
 
 impl Sphere {
     fn of(mesh: &File) -> anyhow::Result<Sphere> {
-        let sphere = pinpose::mesh::load(&mesh.name, &mesh.bytes)?.mesh.sphere();
+        let sphere =
+            pinpose::mesh::load(&mesh.name, &mesh.bytes, &pinpose::mesh::no_companions)?.mesh.sphere();
         Ok(Sphere { center: sphere.center.to_array(), radius: sphere.radius })
     }
 }

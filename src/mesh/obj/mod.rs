@@ -1,26 +1,45 @@
-//! Wavefront OBJ: positions, vertex colours, normals and polygons.
+//! Wavefront OBJ: positions, vertex colours, normals and polygons; materials and textures from its library.
 //!
 //! Own parser, for two reasons. Metrics average over the vertices of the file, in its order and each once, and OBJ
 //! libraries hand out one vertex per combination of position, texture coordinate and normal. And a message has to name
-//! the line. Everything else of the format (materials, curves, points, lines) is left out.
+//! the line. Everything else of the format (curves, points, lines) is left out.
+
+mod look;
+mod material;
+#[cfg(test)]
+mod tests;
 
 use std::borrow::Cow;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use super::load::Parsed;
+use super::load::{Parsed, Source};
 use super::text::{next_line, parse_number, shown, words};
 use super::{Format, MAX_TRIANGLES, MeshData, MeshError, Place};
+use look::{Look, NO_UV};
+use material::keyword_and_rest;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, MeshError> {
+pub(super) fn parse(source: &Source<'_>) -> Result<Parsed, MeshError> {
     let mut reader = Reader::default();
     let mut position = 0;
     let mut line_number = 0;
-    while let Some(line) = next_logical_line(bytes, &mut position, &mut line_number) {
+    while let Some(line) = next_logical_line(source.bytes, &mut position, &mut line_number) {
         reader.line = line_number;
         reader.read_line(&line)?;
     }
-    reader.finish()
+    reader.finish(source)
+}
+
+/// The libraries that the file names, and the images that those name.
+pub(super) fn companion_names(source: &Source<'_>) -> Vec<String> {
+    let mut look = Look::default();
+    let mut position = 0;
+    while let Some(line) = next_line(source.bytes, &mut position) {
+        if line.trim_ascii_start().starts_with(b"mtllib") {
+            look.add_library(keyword_and_rest(line).map_or(&[], |(_, rest)| rest));
+        }
+    }
+    look.companion_names(source)
 }
 
 /// A line, together with those it continues on: a backslash at its end says so. `line_number` becomes that of its last.
@@ -45,6 +64,8 @@ fn next_logical_line<'a>(
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     vertex: u32,
+    /// [`NO_UV`] where there is none.
+    uv: u32,
     normal: Option<u32>,
 }
 
@@ -58,13 +79,14 @@ struct Reader {
     triangles: Vec<[u32; 3]>,
     /// The corners of the face at hand; kept to save the allocation.
     face: Vec<Corner>,
+    face_uvs: Vec<u32>,
     /// Vertex and normal number of every corner that has both.
     corner_normals: Vec<(u32, u32)>,
     corner_count: usize,
     /// The largest vertex number of a face, and the line it stands in: faces may precede their vertices.
     largest_index: Option<(u32, usize)>,
     faces_of_less_than_three: usize,
-    material_library: Option<String>,
+    look: Look,
 }
 
 impl Reader {
@@ -78,12 +100,26 @@ impl Reader {
                 Ok(())
             }
             Some(b"f" | b"fo") => self.read_face(words),
+            Some(b"vt") => {
+                self.read_texture_coordinate(words);
+                Ok(())
+            }
             Some(b"mtllib") => {
-                self.material_library = words.next().map(|word| String::from_utf8_lossy(word).into_owned());
+                self.look.add_library(keyword_and_rest(line).map_or(&[], |(_, rest)| rest));
+                Ok(())
+            }
+            Some(b"usemtl") => {
+                self.look.use_material(keyword_and_rest(line).map_or(&[], |(_, rest)| rest));
                 Ok(())
             }
             _ => Ok(()),
         }
+    }
+
+    /// `vt u`, `vt u v` or `vt u v w`. What is no number becomes zero: it moves a texture, not the surface.
+    fn read_texture_coordinate<'a>(&mut self, mut words: impl Iterator<Item = &'a [u8]>) {
+        let mut next = || words.next().and_then(parse_number).unwrap_or_default() as f32;
+        self.look.file_uvs.push(Vec2::new(next(), next()));
     }
 
     /// `v x y z`, `v x y z w` (w is for curves, and ignored) or `v x y z r g b`.
@@ -148,10 +184,12 @@ impl Reader {
     fn corner(&self, word: &[u8]) -> Result<Corner, MeshError> {
         let mut parts = word.split(|&byte| byte == b'/');
         let vertex = parts.next().unwrap_or_default();
-        let normal = parts.nth(1).filter(|part| !part.is_empty());
+        let uv = parts.next().filter(|part| !part.is_empty());
+        let normal = parts.next().filter(|part| !part.is_empty());
         let vertex = self.index(vertex, self.positions.len(), word)?;
+        let uv = uv.and_then(|part| self.index(part, self.look.file_uvs.len(), word).ok()).unwrap_or(NO_UV);
         let normal = normal.map(|part| self.index(part, self.file_normals.len(), word)).transpose()?;
-        Ok(Corner { vertex, normal })
+        Ok(Corner { vertex, uv, normal })
     }
 
     /// OBJ counts from 1; a negative number counts back from the latest one.
@@ -178,11 +216,15 @@ impl Reader {
             self.corner_normals.extend(corner.normal.map(|normal| (corner.vertex, normal)));
         }
         self.corner_count += face.len();
+        let triangles_before = self.triangles.len();
         let fan = face.windows(2).skip(1);
         self.triangles.extend(fan.map(|pair| [face[0].vertex, pair[0].vertex, pair[1].vertex]));
+        self.face_uvs.clear();
+        self.face_uvs.extend(face.iter().map(|corner| corner.uv));
+        self.look.add_polygon(&self.face_uvs, triangles_before, self.triangles.len());
     }
 
-    fn finish(mut self) -> Result<Parsed, MeshError> {
+    fn finish(mut self, source: &Source<'_>) -> Result<Parsed, MeshError> {
         if let Some((index, line)) =
             self.largest_index.filter(|&(index, _)| index as usize >= self.positions.len())
         {
@@ -198,19 +240,11 @@ impl Reader {
             let count = self.faces_of_less_than_three;
             warnings.push(format!("{count} faces have fewer than three corners and are left out."));
         }
-        if let Some(library) = &self.material_library {
-            warnings.push(format!(
-                "The material library “{library}” is not read: its colours and textures are missing."
-            ));
-        }
         let colors = self.srgb_colors();
-        let data = MeshData {
-            positions_mm: self.positions,
-            triangles: self.triangles,
-            normals,
-            colors,
-            paint: None,
-        };
+        let paint = self.look.into_paint(source, self.triangles.len(), &mut warnings);
+        let mut data =
+            MeshData { positions_mm: self.positions, triangles: self.triangles, normals, colors, paint };
+        data.prefer_texture();
         Ok(Parsed { data, warnings })
     }
 
@@ -253,72 +287,5 @@ impl Reader {
 
     fn malformed(&self, problem: String) -> MeshError {
         MeshError::Malformed { format: Format::Obj, place: Place::Line(self.line), problem }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-
-    fn parsed(rest: &str) -> Result<Parsed, MeshError> {
-        parse(format!("{SQUARE}{rest}").as_bytes())
-    }
-
-    fn message(rest: &str) -> String {
-        parsed(rest).unwrap_err().to_string()
-    }
-
-    #[test]
-    fn polygons_become_fans_and_negative_numbers_count_back() {
-        let data = parsed("f 1/1 2/2/ 3// 4\nf -4 -3 \\\n -2\n").unwrap().data;
-        assert_eq!(data.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
-        assert_eq!(data.positions_mm.len(), 4);
-    }
-
-    #[test]
-    fn vertices_keep_their_number_whatever_the_corners_say() {
-        let normals = "vn 0 0 1\nvn 0 0 2\nvn 1 0 0\n";
-        let same = parsed(&format!("{normals}f 1//1 2//1 3//1\nf 1//1 3//1 4//2\n")).unwrap().data;
-        assert_eq!(
-            same.normals.as_deref().and_then(|normals| normals.get(3)),
-            Some(&Vec3::new(0.0, 0.0, 2.0))
-        );
-        let hard_edge = parsed(&format!("{normals}f 1//1 2//1 3//1\nf 1//3 3//1 4//2\n")).unwrap().data;
-        assert_eq!((hard_edge.normals, hard_edge.positions_mm.len()), (None, 4));
-    }
-
-    #[test]
-    fn colors_come_in_both_scales() {
-        let unit = parse(b"v 0 0 0 1 0.5 0\nv 1 0 0\nv 0 1 0 nan 0 0\nf 1 2 3").unwrap().data;
-        assert_eq!(unit.colors, Some(vec![[255, 128, 0, 255], [255; 4], [0, 0, 0, 255]]));
-        let bytes = parse(b"v 0 0 0 255 128 0\nv 1 0 0 0 0 0\nv 0 1 0 0 0 0\nf 1 2 3").unwrap().data;
-        assert_eq!(bytes.colors.and_then(|colors| colors.first().copied()), Some([255, 128, 0, 255]));
-    }
-
-    #[test]
-    fn messages_name_the_line() {
-        assert!(message("f 1 2 9\n").starts_with("OBJ, line 5: the face names vertex 9"));
-        assert!(message("f 0 1 2\n").starts_with("OBJ, line 5: the face's corner “0”"));
-        assert!(message("f -5 1 2\n").contains("back to -4"));
-        assert!(message("v 1 2\n").ends_with("a vertex of 2 numbers, expected three"));
-        assert!(message("v 1 2 1.#IND\n").contains("“1.#IND”"));
-        assert!(message("v 1 2 nan\n").contains("finite"));
-    }
-
-    #[test]
-    fn small_faces_and_materials_are_warnings() {
-        let warnings = parsed("mtllib a.mtl\nf 1 2\nf 1 2 3\n").unwrap().warnings;
-        assert!(warnings[0].starts_with("1 faces") && warnings[1].contains("a.mtl"), "{warnings:?}");
-    }
-
-    proptest! {
-        #[test]
-        fn no_bytes_panic(text in "([vf]n? [-0-9/. #\\\\]{0,12}\n){0,12}") {
-            let _ = parse(text.as_bytes());
-        }
     }
 }
