@@ -3,6 +3,7 @@
 //! This room knows nothing of photos, poses in a scene, or the GPU. Nothing here reads a file: loaders take bytes.
 
 mod bvh;
+mod coarse;
 mod companions;
 mod edges;
 mod error;
@@ -28,6 +29,7 @@ use glam::{DAffine3, DVec3, Vec3};
 use crate::math::{BoundingSphere, Bounds};
 
 pub use bvh::Bvh;
+pub use coarse::{CoarseMesh, coarse_mesh};
 pub use companions::{FindCompanion, companion_key, companion_names, no_companions};
 pub use edges::{MeshEdges, mesh_edges};
 pub use error::{Format, MeshError, Place};

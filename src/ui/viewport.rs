@@ -76,6 +76,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
     };
     let mut picture = picture_of(&subject)?;
     picture.rect = around.view.visible_rect();
+    picture.in_motion = around.dragging;
     Some(picture)
 }
 

@@ -93,6 +93,7 @@ pub fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: 
         widths: LineWidths::for_scale(1.0),
         surroundings: None,
         background: Rgb([0; 3]),
+        in_motion: false,
     }
 }
 
