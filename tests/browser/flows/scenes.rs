@@ -154,7 +154,6 @@ const TO_VERSION_1: &str = r#"(async () => {
     const done = (request) => new Promise((resolve, reject) => {
         request.onsuccess = () => resolve(request.result);
         request.onerror = () => reject(request.error);
-        request.onblocked = () => reject('blocked');
     });
     const now = await done(indexedDB.open('pinpose'));
     const reading = now.transaction(['documents', 'assets']);
