@@ -8,8 +8,10 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use crate::formats::{Document, Keep, ViewSettings, write_document};
-use crate::platform::{self, Journal, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, Storage};
-use crate::scene::{Scene, SceneFile, file_stem};
+use crate::platform::{
+    self, Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, Storage,
+};
+use crate::scene::{Scene, SceneFile, Sha256, file_stem};
 use crate::session::Session;
 use crate::ui::Saving;
 
@@ -259,7 +261,19 @@ impl Seen {
             file_name: file.name.to_owned(),
             bytes: file.bytes.clone(),
         };
+        let meshes = self.scene.objects.iter().map(|object| &object.mesh);
+        let companions = meshes.flat_map(|mesh| {
+            mesh.companions.iter().map(|file| SavedCompanion {
+                of: mesh.sha256.to_string(),
+                file: SavedAsset {
+                    key: Sha256::of(&file.bytes).to_string(),
+                    file_name: file.file_name.clone(),
+                    bytes: file.bytes.clone(),
+                },
+            })
+        });
         Saved {
+            companions: companions.collect(),
             heading: heading(&self.scene, changed_at_ms),
             json: write_document(&self.document()),
             assets: self.scene.files().iter().map(asset).collect(),

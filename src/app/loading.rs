@@ -12,7 +12,7 @@ use crate::formats::{
     with_companions,
 };
 use crate::photo::Pixels;
-use crate::platform::{self, FileBytes, Loaded, PageAnswer, PageReply, Saved};
+use crate::platform::{self, FileBytes, Loaded, PageAnswer, PageReply, Saved, SavedAsset};
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
 use crate::session::{Batch, Command, Notice, Opening};
 
@@ -134,7 +134,11 @@ impl Loading {
         let mut load = self.new_load(Batch::default(), None);
         load.opening = Some((document, Origin::Storage));
         for asset in saved.assets {
-            self.take_file(&mut load, NamedFile { name: asset.file_name, bytes: asset.bytes }, &[]);
+            let its_own = saved.companions.iter().filter(|companion| companion.of == asset.key);
+            let named =
+                |file: &SavedAsset| NamedFile { name: file.file_name.clone(), bytes: file.bytes.clone() };
+            let companions: Vec<NamedFile> = its_own.map(|companion| named(&companion.file)).collect();
+            self.take_file(&mut load, named(&asset), &companions);
         }
         self.loads.push(load);
         Ok(())

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::storage::{
-    Journal, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture,
-    StorageUse, distinct, sort_scenes,
+    Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary, Storage,
+    StorageFuture, StorageUse, distinct, sort_scenes,
 };
 
 #[derive(Debug, Default)]
@@ -29,6 +29,16 @@ struct Record {
     json: String,
     /// Keys and the names that the files have in this scene.
     assets: Vec<(String, String)>,
+    /// Of which asset, and as above.
+    companions: Vec<(String, (String, String))>,
+}
+
+impl Record {
+    /// The keys of all files, some more than once.
+    fn keys(&self) -> impl Iterator<Item = &String> {
+        let companions = self.companions.iter().map(|(_, file)| file);
+        self.assets.iter().chain(companions).map(|(key, _)| key)
+    }
 }
 
 impl MemoryStorage {
@@ -45,7 +55,8 @@ impl MemoryStorage {
 
 impl Kept {
     fn bytes(&self, record: &Record) -> u64 {
-        let sizes = record.assets.iter().filter_map(|(key, _)| self.assets.get(key));
+        let keys: BTreeSet<&String> = record.keys().collect();
+        let sizes = keys.into_iter().filter_map(|key| self.assets.get(key));
         record.json.len() as u64 + sizes.map(|asset| asset.bytes.len() as u64).sum::<u64>()
     }
 
@@ -69,26 +80,35 @@ impl Kept {
             heading: record.heading.clone(),
             json: record.json.clone(),
             assets: record.assets.iter().filter_map(asset).collect(),
+            companions: record
+                .companions
+                .iter()
+                .filter_map(|(of, file)| Some(SavedCompanion { of: of.clone(), file: asset(file)? }))
+                .collect(),
         })
     }
 
-    fn save(&mut self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> SaveOutcome {
+    fn save(&mut self, id: &SceneId, saved: &Saved, last_seen_ms: Option<f64>) -> SaveOutcome {
         let stored_ms = self.scenes.get(id).map(|record| record.heading.changed_at_ms);
         if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
             return SaveOutcome::ChangedElsewhere;
         }
-        let assets =
-            distinct(&saved.assets).map(|asset| (asset.key.clone(), asset.file_name.clone())).collect();
-        let record = Record { heading: saved.heading, json: saved.json, assets };
+        let named = |asset: &SavedAsset| (asset.key.clone(), asset.file_name.clone());
+        let companions = saved.companions.iter();
+        let record = Record {
+            assets: distinct(&saved.assets).map(named).collect(),
+            companions: companions.map(|one| (one.of.clone(), named(&one.file))).collect(),
+            heading: saved.heading.clone(),
+            json: saved.json.clone(),
+        };
         self.scenes.insert(id.clone(), record);
-        self.assets.extend(saved.assets.into_iter().map(|asset| (asset.key.clone(), asset)));
+        self.assets.extend(saved.files().map(|file| (file.key.clone(), file.clone())));
         self.remove_unneeded();
         SaveOutcome::Saved
     }
 
     fn remove_unneeded(&mut self) {
-        let keys = self.scenes.values().flat_map(|record| &record.assets);
-        let needed: BTreeSet<&String> = keys.map(|(key, _)| key).collect();
+        let needed: BTreeSet<&String> = self.scenes.values().flat_map(Record::keys).collect();
         self.assets.retain(|key, _| needed.contains(key));
     }
 }
@@ -110,7 +130,7 @@ impl Storage for MemoryStorage {
         if let Some(reason) = self.failure.borrow().clone() {
             return Box::pin(async { Err(reason) });
         }
-        ready(self.kept.borrow_mut().save(id, saved, last_seen_ms))
+        ready(self.kept.borrow_mut().save(id, &saved, last_seen_ms))
     }
 
     fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()> {

@@ -25,8 +25,8 @@ pub use page_api::{
 };
 pub use preferences::{keep_preferences_in_memory, read_preference, write_preference};
 pub use storage::{
-    Journal, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture,
-    StorageUse,
+    Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary, Storage,
+    StorageFuture, StorageUse,
 };
 #[cfg(target_arch = "wasm32")]
 pub use web::{

@@ -1,5 +1,6 @@
 //! What is kept between visits: scenes by id, and the photos and meshes that they speak of, each stored once for all.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::pin::Pin;
 use std::rc::Rc;
@@ -69,11 +70,27 @@ pub struct Saved {
     pub heading: SceneHeading,
     pub json: String,
     pub assets: Vec<SavedAsset>,
+    pub companions: Vec<SavedCompanion>,
+}
+
+/// A file that an asset asks for: a mesh's texture. Its content is stored as an asset's is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SavedCompanion {
+    /// The key of the asset that it belongs to.
+    pub of: String,
+    pub file: SavedAsset,
 }
 
 impl Saved {
     pub fn bytes(&self) -> u64 {
-        self.json.len() as u64 + distinct(&self.assets).map(|asset| asset.bytes.len() as u64).sum::<u64>()
+        self.json.len() as u64 + self.files().map(|file| file.bytes.len() as u64).sum::<u64>()
+    }
+
+    /// Assets and companions, each content once.
+    pub fn files(&self) -> impl Iterator<Item = &SavedAsset> {
+        let companions = self.companions.iter().map(|companion| &companion.file);
+        let mut seen = BTreeSet::new();
+        self.assets.iter().chain(companions).filter(move |file| seen.insert(&file.key))
     }
 }
 

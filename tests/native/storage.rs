@@ -5,8 +5,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use pinpose::platform::{
-    FolderStorage, Journal, MemoryStorage, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, Storage,
-    StorageFuture, keep_preferences_in_memory, read_preference, write_preference,
+    FolderStorage, Journal, MemoryStorage, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading,
+    SceneId, Storage, StorageFuture, keep_preferences_in_memory, read_preference, write_preference,
 };
 
 fn now<T>(future: StorageFuture<T>) -> T {
@@ -29,7 +29,12 @@ fn saved(name: &str, changed_at_ms: f64, assets: &[SavedAsset]) -> Saved {
         photo_count: 3,
         object_count: 2,
     };
-    Saved { heading, json: format!("{{\n\n\"of\": \"{name}\"}}"), assets: assets.to_vec() }
+    Saved {
+        heading,
+        json: format!("{{\n\n\"of\": \"{name}\"}}"),
+        assets: assets.to_vec(),
+        companions: Vec::new(),
+    }
 }
 
 /// A folder that is gone when the test is over.
@@ -127,6 +132,33 @@ fn assets_are_stored_once_and_go_with_the_last_scene_that_needs_them() {
     delete("a", 1);
     delete("b", 0);
     assert_eq!(now(storage.usage()).used_bytes, 0);
+}
+
+#[test]
+fn textures_come_back_with_their_meshes() {
+    on_both("textures", |storage| {
+        let texture = |of: &str, bytes: &[u8]| SavedCompanion {
+            of: of.to_owned(),
+            file: SavedAsset {
+                file_name: "wood.png".to_owned(),
+                ..asset(&format!("texture{}", bytes.len()), bytes)
+            },
+        };
+        // Two meshes with textures of one name, and a third that shares the first one's.
+        let companions = vec![texture("aa", b"oak"), texture("bb", b"beech"), texture("cc", b"oak")];
+        let assets = ["aa", "bb", "cc"].map(|key| asset(key, key.as_bytes()));
+        let mut chairs = Saved { companions, ..saved("Chairs", 1.0, &assets) };
+        now(storage.save(&id("a"), chairs.clone(), None));
+        now(storage.duplicate(&id("a"), &id("b"), "Chairs"));
+        assert_eq!(now(storage.load(&id("b"))), Some(chairs.clone()));
+        assert_eq!(now(storage.list())[0].bytes, chairs.bytes());
+        now(storage.delete(&id("a")));
+        assert_eq!(now(storage.load(&id("b"))), Some(chairs.clone()));
+        let all = now(storage.usage()).used_bytes;
+        chairs.companions.clear();
+        now(storage.save(&id("b"), chairs, None));
+        assert!(now(storage.usage()).used_bytes <= all - 8, "the textures are still there");
+    });
 }
 
 #[test]

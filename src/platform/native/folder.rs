@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::platform::storage::{
-    Journal, SaveOutcome, Saved, SavedAsset, SceneId, SceneSummary, Storage, StorageFuture, StorageUse,
-    distinct, sort_scenes,
+    Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneId, SceneSummary, Storage, StorageFuture,
+    StorageUse, distinct, sort_scenes,
 };
 use record::{AssetLine, Record};
 
@@ -72,12 +72,17 @@ impl FolderStorage {
 
     fn load_now(&self, id: &SceneId) -> io::Result<Option<Saved>> {
         let Some(record) = self.record(id)? else { return Ok(None) };
-        let mut assets = Vec::new();
-        for asset in record.assets {
-            let bytes = fs::read(self.assets().join(file_name(&asset.key)))?;
-            assets.push(SavedAsset { key: asset.key, file_name: asset.file_name, bytes: Arc::from(bytes) });
-        }
-        Ok(Some(Saved { heading: record.heading, json: record.json, assets }))
+        let read = |line: AssetLine| {
+            let bytes = Arc::from(fs::read(self.assets().join(file_name(&line.key)))?);
+            io::Result::Ok(SavedAsset { key: line.key, file_name: line.file_name, bytes })
+        };
+        let companion = |(of, line)| io::Result::Ok(SavedCompanion { of, file: read(line)? });
+        Ok(Some(Saved {
+            heading: record.heading,
+            json: record.json,
+            assets: record.assets.into_iter().map(read).collect::<io::Result<_>>()?,
+            companions: record.companions.into_iter().map(companion).collect::<io::Result<_>>()?,
+        }))
     }
 
     fn save_now(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> io::Result<SaveOutcome> {
@@ -85,19 +90,20 @@ impl FolderStorage {
         if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
             return Ok(SaveOutcome::ChangedElsewhere);
         }
-        let mut assets = Vec::new();
-        for asset in distinct(&saved.assets) {
-            let path = self.assets().join(file_name(&asset.key));
+        for file in saved.files() {
+            let path = self.assets().join(file_name(&file.key));
             if !path.exists() {
-                write_whole(&path, &asset.bytes)?;
+                write_whole(&path, &file.bytes)?;
             }
-            assets.push(AssetLine {
-                key: asset.key.clone(),
-                bytes: asset.bytes.len() as u64,
-                file_name: asset.file_name.clone(),
-            });
         }
-        self.write_record(id, &Record { heading: saved.heading, assets, json: saved.json })?;
+        let line = |file: &SavedAsset| AssetLine {
+            key: file.key.clone(),
+            bytes: file.bytes.len() as u64,
+            file_name: file.file_name.clone(),
+        };
+        let companions = saved.companions.iter().map(|one| (one.of.clone(), line(&one.file))).collect();
+        let assets = distinct(&saved.assets).map(line).collect();
+        self.write_record(id, &Record { heading: saved.heading, assets, companions, json: saved.json })?;
         self.remove_unneeded()?;
         Ok(SaveOutcome::Saved)
     }
@@ -119,9 +125,9 @@ impl FolderStorage {
     }
 
     fn remove_unneeded(&self) -> io::Result<()> {
-        let assets = self.records()?.into_iter().flat_map(|(_, record)| record.assets);
-        let needed: BTreeSet<PathBuf> =
-            assets.map(|asset| self.assets().join(file_name(&asset.key))).collect();
+        let records = self.records()?;
+        let files = records.iter().flat_map(|(_, record)| record.files());
+        let needed: BTreeSet<PathBuf> = files.map(|file| self.assets().join(file_name(&file.key))).collect();
         for path in files_in(&self.assets())? {
             if !needed.contains(&path) {
                 fs::remove_file(path)?;

@@ -5,8 +5,8 @@
 //!
 //! | store | key | value |
 //! |---|---|---|
-//! | `scenes` | scene id | what the list says of it, and the keys of its assets |
-//! | `documents` | scene id | `{json, assets}` |
+//! | `scenes` | scene id | what the list says of it, and the keys of all its files |
+//! | `documents` | scene id | `{json, assets, companions: [{of, key, name}]}` |
 //! | `assets` | SHA-256 of the content | `{name, bytes}` |
 //! | `state` | `last_open` | a scene id |
 
@@ -23,8 +23,8 @@ use wasm_bindgen::prelude::*;
 
 use super::{browser_storage, describe};
 use crate::platform::storage::{
-    Journal, SaveOutcome, Saved, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture, StorageUse,
-    distinct, sort_scenes,
+    Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary, Storage,
+    StorageFuture, StorageUse, distinct, sort_scenes,
 };
 
 const SCENES: &str = "scenes";
@@ -253,8 +253,16 @@ async fn load(transaction: &Transaction, id: &SceneId) -> Result<Option<Saved>, 
             assets.extend(records::read_asset(asset, &value));
         }
     }
+    let mut companions = Vec::new();
+    for (of, key, file_name) in records::companions(&document) {
+        if let Some(value) = store.get(Query::Key(key.as_str().into()))?.await?
+            && let Some(file) = records::read_asset(key, &value)
+        {
+            companions.push(SavedCompanion { of, file: SavedAsset { file_name, ..file } });
+        }
+    }
     let heading = scene.as_ref().map_or_else(SceneHeading::default, records::heading);
-    Ok(Some(Saved { heading, json, assets }))
+    Ok(Some(Saved { heading, json, assets, companions }))
 }
 
 /// What is stored is looked up within the transaction: another tab may have changed it.
@@ -271,13 +279,14 @@ async fn save(
     }
     let assets = transaction.object_store(ASSETS)?;
     let stored = stored_asset_keys(transaction).await?;
-    for asset in distinct(&saved.assets).filter(|asset| !stored.contains(&asset.key)) {
-        assets.put(&records::asset(asset), Some(&asset.key.as_str().into()))?.await?;
+    for file in saved.files().filter(|file| !stored.contains(&file.key)) {
+        assets.put(&records::asset(file), Some(&file.key.as_str().into()))?.await?;
     }
     let keys: Vec<String> = distinct(&saved.assets).map(|asset| asset.key.clone()).collect();
-    let document = records::document(&saved.json, &keys);
+    let document = records::document(&saved.json, &keys, &saved.companions);
     transaction.object_store(DOCUMENTS)?.put(&document, Some(&id.as_str().into()))?.await?;
-    let scene = records::scene(&saved.heading, saved.bytes(), &keys);
+    let needed: Vec<String> = saved.files().map(|file| file.key.clone()).collect();
+    let scene = records::scene(&saved.heading, saved.bytes(), &needed);
     scenes.put(&scene, Some(&id.as_str().into()))?.await?;
     remove_unneeded(transaction).await?;
     Ok(SaveOutcome::Saved)

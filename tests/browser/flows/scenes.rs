@@ -23,8 +23,10 @@ pub fn scenes(context: &mut Context) -> anyhow::Result<()> {
     page.click_widget("Saved in this browser")?;
     page.click_widget("New scene")?;
     page.wait_for_state("!state.busy && state.photos.length === 0", PATIENCE)?;
-    // The welcome screen offers the first one.
-    page.wait_for_widgets(&["Go on with", "first"])?;
+    // The welcome screen offers the first one, and says when it was changed.
+    let widgets = page.wait_for_widgets(&["Go on with"])?;
+    let is_offered = widgets.iter().any(|widget| widget.label.starts_with("first"));
+    ensure!(is_offered, "The first scene is not offered");
     page.drop_files(&[flat_photo("second.png", [120, 30, 30])?, disc])?;
     page.wait_for_state("state.objects.length === 1", PATIENCE)?;
     let second = page.wait_until_saved()?;
@@ -152,7 +154,6 @@ const TO_VERSION_1: &str = r#"(async () => {
     const done = (request) => new Promise((resolve, reject) => {
         request.onsuccess = () => resolve(request.result);
         request.onerror = () => reject(request.error);
-        request.onblocked = () => reject('blocked');
     });
     const now = await done(indexedDB.open('pinpose'));
     const reading = now.transaction(['documents', 'assets']);

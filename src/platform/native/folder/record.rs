@@ -1,5 +1,6 @@
 //! A scene's file: lines of a word and its value, an empty line, and the document.
 
+use std::collections::BTreeMap;
 use std::io;
 
 use crate::platform::storage::SceneHeading;
@@ -8,6 +9,8 @@ use crate::platform::storage::SceneHeading;
 pub struct Record {
     pub heading: SceneHeading,
     pub assets: Vec<AssetLine>,
+    /// Each with the key of the asset that it belongs to.
+    pub companions: Vec<(String, AssetLine)>,
     pub json: String,
 }
 
@@ -21,7 +24,13 @@ pub struct AssetLine {
 impl Record {
     /// With its photos and meshes.
     pub fn bytes(&self) -> u64 {
-        self.json.len() as u64 + self.assets.iter().map(|asset| asset.bytes).sum::<u64>()
+        let bytes: BTreeMap<&String, u64> = self.files().map(|file| (&file.key, file.bytes)).collect();
+        self.json.len() as u64 + bytes.values().sum::<u64>()
+    }
+
+    /// All files, some more than once.
+    pub fn files(&self) -> impl Iterator<Item = &AssetLine> {
+        self.assets.iter().chain(self.companions.iter().map(|(_, file)| file))
     }
 
     pub fn to_text(&self) -> String {
@@ -30,8 +39,11 @@ impl Record {
         let mut text = format!(
             "name {name}\nsubject {subject}\nchanged_at_ms {changed_at_ms}\nphotos {photo_count}\nobjects {object_count}\n"
         );
-        for AssetLine { key, bytes, file_name } in &self.assets {
-            text += &format!("asset {key} {bytes} {}\n", one_line(file_name));
+        for asset in &self.assets {
+            text += &format!("asset {}\n", asset.to_text());
+        }
+        for (of, file) in &self.companions {
+            text += &format!("companion {of} {}\n", file.to_text());
         }
         text + "\n" + &self.json
     }
@@ -56,19 +68,27 @@ impl Record {
             "changed_at_ms" => heading.changed_at_ms = value.parse().ok()?,
             "photos" => heading.photo_count = value.parse().ok()?,
             "objects" => heading.object_count = value.parse().ok()?,
-            "asset" => {
-                let (key, rest) = value.split_once(' ')?;
-                let (bytes, file_name) = rest.split_once(' ')?;
-                self.assets.push(AssetLine {
-                    key: key.to_owned(),
-                    bytes: bytes.parse().ok()?,
-                    file_name: file_name.to_owned(),
-                });
+            "asset" => self.assets.push(AssetLine::from_text(value)?),
+            "companion" => {
+                let (of, file) = value.split_once(' ')?;
+                self.companions.push((of.to_owned(), AssetLine::from_text(file)?));
             }
             // A later version may say more.
             _ => {}
         }
         Some(())
+    }
+}
+
+impl AssetLine {
+    fn to_text(&self) -> String {
+        format!("{} {} {}", self.key, self.bytes, one_line(&self.file_name))
+    }
+
+    fn from_text(text: &str) -> Option<Self> {
+        let (key, rest) = text.split_once(' ')?;
+        let (bytes, file_name) = rest.split_once(' ')?;
+        Some(Self { key: key.to_owned(), bytes: bytes.parse().ok()?, file_name: file_name.to_owned() })
     }
 }
 

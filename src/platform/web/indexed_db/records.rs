@@ -5,7 +5,7 @@ use std::sync::Arc;
 use js_sys::{Array, JSON, Object, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
 
-use crate::platform::storage::{SavedAsset, SceneHeading, SceneId, SceneSummary};
+use crate::platform::storage::{SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary};
 
 pub fn scene(heading: &SceneHeading, bytes: u64, asset_keys: &[String]) -> JsValue {
     object(&[
@@ -40,8 +40,21 @@ pub fn set_name(scene: &JsValue, name: &str) {
     Reflect::set(scene, &"name".into(), &name.into()).ok();
 }
 
-pub fn document(json: &str, asset_keys: &[String]) -> JsValue {
-    object(&[("json", json.into()), ("assets", list(asset_keys))])
+pub fn document(json: &str, asset_keys: &[String], companions: &[SavedCompanion]) -> JsValue {
+    let companion = |one: &SavedCompanion| {
+        let (key, name) = (one.file.key.as_str(), one.file.file_name.as_str());
+        object(&[("of", one.of.as_str().into()), ("key", key.into()), ("name", name.into())])
+    };
+    let companions: Array = companions.iter().map(companion).collect();
+    object(&[("json", json.into()), ("assets", list(asset_keys)), ("companions", companions.into())])
+}
+
+/// Of which asset, the key of its content, and its name.
+pub fn companions(document: &JsValue) -> Vec<(String, String, String)> {
+    let companions = field(document, "companions").dyn_into::<Array>().unwrap_or_default();
+    let read =
+        |one: JsValue| Some((text_field(&one, "of")?, text_field(&one, "key")?, text_field(&one, "name")?));
+    companions.iter().filter_map(read).collect()
 }
 
 /// What a document of version 1 says of itself; what it does not say is left empty.
