@@ -24,7 +24,7 @@ impl PinPose {
             Effect::ResetSceneView => {}
             Effect::TogglePalette => self.ui_state.toggle(Dialog::Palette),
             Effect::ToggleTheme => {}
-            Effect::RenameSelected => {}
+            Effect::RenameSelected => self.ui_state.rename_selected(&self.session),
             Effect::ZoomToObject => self.zoom_to_object(),
             Effect::FitPhoto => self.view.fit(),
             Effect::TogglePanels => self.ui_state.panels_hidden = !self.ui_state.panels_hidden,

@@ -5,6 +5,7 @@
 
 mod page_api;
 mod storage;
+mod time_zone;
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
@@ -20,6 +21,7 @@ pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
 };
 pub use storage::{MemoryStorage, Saved, SavedAsset, Storage, StorageFuture};
+pub use time_zone::utc_offset_minutes;
 #[cfg(target_arch = "wasm32")]
 pub use web::{
     Background, default_storage, download, fetch_example, install_panic_hook, navigation_ms, now_ms,
