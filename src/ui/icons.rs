@@ -145,19 +145,12 @@ fn draw_step(icon: Icon, line: &Line<'_>) {
             line(&[at(-5.0, 0.0), at(5.0, 0.0)]);
             line(&[at(1.0, -4.0), at(5.0, 0.0), at(1.0, 4.0)]);
         }
-        // A square that is about to grow, or to shrink.
+        // A plus and a minus in a ring: larger, smaller.
         Icon::Nearer | Icon::Farther => {
-            let out = if icon == Icon::Nearer { 1.0 } else { -1.0 };
-            line(&[(5.0, 5.0), (9.0, 5.0), (9.0, 9.0), (5.0, 9.0), (5.0, 4.5)]);
-            for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-                let tip = if out > 0.0 { 6.0 } else { 3.6 };
-                let corner = |distance: f32| (7.0 + x * distance, 7.0 + y * distance);
-                line(&[corner(3.4), corner(6.2)]);
-                line(&[
-                    (7.0 + x * (tip - out * 2.0), 7.0 + y * tip),
-                    corner(tip),
-                    (7.0 + x * tip, 7.0 + y * (tip - out * 2.0)),
-                ]);
+            line(&arc((7.0, 7.0), 5.8, 0.0, 360.0));
+            line(&[(4.2, 7.0), (9.8, 7.0)]);
+            if icon == Icon::Nearer {
+                line(&[(7.0, 4.2), (7.0, 9.8)]);
             }
         }
         _ => {}

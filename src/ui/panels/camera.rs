@@ -60,19 +60,24 @@ fn body(ui: &mut Ui, photo: &Photo, form: &mut CameraForm, commands: &mut Vec<Co
     ui.horizontal(|ui| {
         let size = format!("{} × {} px", photo.camera.width, photo.camera.height);
         ui.label(egui::RichText::new(size).small().weak()).on_hover_text("The photo's size, width × height");
+        quiet_origin(ui, photo, if photo.camera.distortion.is_none() { 48.0 } else { 0.0 });
         if photo.camera.distortion.is_none() {
-            let text = egui::RichText::new("Lens distortion").small();
-            ui.toggle_value(&mut form.distortion_shown, text).on_hover_text("Show k1 k2 p1 p2 k3");
-        }
-        if photo.locked {
-            ui.label(egui::RichText::new("locked").small().weak());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let button =
+                    egui::Button::selectable(form.distortion_shown, egui::RichText::new("Lens").small());
+                let response = ui.add(button.min_size(egui::Vec2::new(0.0, 18.0)));
+                ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Lens distortion"));
+                if response.on_hover_text("Show the lens's distortion, k1 k2 p1 p2 k3").clicked() {
+                    form.distortion_shown = !form.distortion_shown;
+                }
+            });
         }
     });
     take(photo, camera, form, commands);
     if let Some((_, reason)) = form.refused.as_ref().filter(|(refused, _)| *refused == photo.id) {
         refusal(ui, reason);
     }
-    origin(ui, photo);
+    guess(ui, photo);
 }
 
 fn pinhole_fields(ui: &mut Ui, camera: &mut Intrinsics) {
@@ -135,7 +140,21 @@ fn take(photo: &Photo, camera: Intrinsics, form: &mut CameraForm, commands: &mut
     }
 }
 
-fn origin(ui: &mut Ui, photo: &Photo) {
+/// Where numbers came from that are no guess.
+fn quiet_origin(ui: &mut Ui, photo: &Photo, room: f32) {
+    let text = match &photo.camera_origin {
+        CameraOrigin::AssumedFieldOfView | CameraOrigin::Exif => return,
+        CameraOrigin::Typed => "Typed".to_owned(),
+        CameraOrigin::File(name) => format!("From {name}"),
+    };
+    let width = (ui.available_width() - room).max(20.0);
+    ui.allocate_ui(egui::Vec2::new(width, 18.0), |ui| {
+        ui.set_max_width(width);
+        ui.add(egui::Label::new(egui::RichText::new(text).small().weak()).truncate());
+    });
+}
+
+fn guess(ui: &mut Ui, photo: &Photo) {
     match &photo.camera_origin {
         CameraOrigin::AssumedFieldOfView => {
             note(ui, "A guess: 60° field of view. Drop a camera file or type the numbers.", true);
@@ -143,7 +162,6 @@ fn origin(ui: &mut Ui, photo: &Photo) {
         CameraOrigin::Exif => {
             note(ui, "Estimated from the photo's EXIF data. Drop a camera file or type the numbers.", true);
         }
-        CameraOrigin::Typed => note(ui, "Typed", false),
-        CameraOrigin::File(name) => note(ui, &format!("From {name}"), false),
+        CameraOrigin::Typed | CameraOrigin::File(_) => {}
     }
 }

@@ -11,7 +11,7 @@ use crate::session::{Command, CommandId, LogEntry, Session};
 use crate::ui::command_button::command_icon;
 use crate::ui::icons::Icon;
 
-const ROW_HEIGHT: f32 = 20.0;
+const ROW_HEIGHT: f32 = 22.0;
 
 pub fn draw(ui: &mut Ui, session: &Session, search: &mut String, commands: &mut Vec<Command>) {
     let log = session.log();
@@ -72,6 +72,7 @@ fn entry_row(ui: &mut Ui, session: &Session, index: usize, entry: &LogEntry, com
     ui.push_id(("entry", session.log().len() - index), |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
+            ui.spacing_mut().interact_size.y = ROW_HEIGHT;
             ui.spacing_mut().button_padding = egui::Vec2::new(3.0, 0.0);
             let is_present = session.selected_annotation().is_some_and(|(photo, object, annotation)| {
                 (photo, object) == (entry.photo, entry.object)

@@ -68,10 +68,9 @@ pub fn row(ui: &mut Ui, key: RowKey, index: usize, content: impl FnOnce(&mut Ui)
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW_HEIGHT), Sense::hover());
     let ground = ui.interact(rect, egui::Id::unique(("row", key)), Sense::hover());
     let inside = UiBuilder::new().id_salt(key).max_rect(rect).layout(Layout::left_to_right(Align::Center));
-    ui.scope_builder(inside, |ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        content(ui);
-    });
+    let mut inner = ui.new_child(inside);
+    inner.spacing_mut().item_spacing.x = 4.0;
+    content(&mut inner);
     dropped(ui, &ground, rect, key.list, index)
 }
 
@@ -262,12 +261,22 @@ fn color_choice(ui: &mut Ui, present: Rgb) -> Option<Rgb> {
 /// Eye and lock of a row.
 pub fn eye(ui: &mut Ui, of: &str, visible: bool) -> bool {
     let (icon, verb) = if visible { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
-    let label = format!("{verb} {of}");
-    icon_button(ui, icon, &label, &label, true).clicked()
+    toggle_icon(ui, icon, &format!("{verb} {of}"), visible)
 }
 
 pub fn lock(ui: &mut Ui, of: &str, locked: bool) -> bool {
     let (icon, verb) = if locked { (Icon::Lock, "Unlock") } else { (Icon::LockOpen, "Lock") };
-    let label = format!("{verb} {of}");
-    icon_button(ui, icon, &label, &label, true).clicked()
+    toggle_icon(ui, icon, &format!("{verb} {of}"), !locked)
+}
+
+/// What is as it usually is stays in the background.
+fn toggle_icon(ui: &mut Ui, icon: Icon, label: &str, is_usual: bool) -> bool {
+    ui.scope(|ui| {
+        if is_usual {
+            let weak = ui.visuals().weak_text_color();
+            ui.visuals_mut().widgets.inactive.fg_stroke.color = weak;
+        }
+        icon_button(ui, icon, label, label, true).clicked()
+    })
+    .inner
 }

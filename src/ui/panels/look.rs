@@ -43,7 +43,7 @@ pub fn draw(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
 }
 
 fn mode_choice(ui: &mut Ui, look: &mut Look) {
-    let width = ui.available_width();
+    let width = ui.available_width() - 4.0;
     let combo = ComboBox::new("overlay mode", "").selected_text(look.mode.title()).width(width).height(260.0);
     let response = combo
         .show_ui(ui, |ui| {

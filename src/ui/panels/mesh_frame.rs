@@ -44,7 +44,7 @@ pub fn draw(ui: &mut Ui, session: &Session, form: &mut MeshForm, commands: &mut 
 fn mirror(ui: &mut Ui, object: &Object, commands: &mut Vec<Command>) {
     let frame = MeshFrame(object.mesh_from_file);
     ui.horizontal(|ui| {
-        ui.add_sized([52.0, 22.0], egui::Label::new("Mirror").halign(egui::Align::LEFT));
+        ui.label("Mirror");
         for (axis, name) in AXES.into_iter().enumerate() {
             let button = egui::Button::selectable(frame.is_mirrored(axis), name);
             let response = ui.add_sized([34.0, 22.0], button.frame_when_inactive(true));
@@ -61,7 +61,7 @@ fn spacing(ui: &mut Ui, object: &Object, form: &mut MeshForm, commands: &mut Vec
     let frame = MeshFrame(object.mesh_from_file);
     let present = frame.spacing();
     let width = column_width(ui, 3);
-    note(ui, "Spacing, mm per unit of the file, about the mesh's own origin", false);
+    note(ui, "Spacing: mm per unit of the file", false);
     ui.horizontal(|ui| {
         for (axis, label) in AXES.into_iter().enumerate() {
             let held = form.dragged.filter(|(id, dragged, _)| (*id, *dragged) == (object.id, axis));
@@ -70,7 +70,7 @@ fn spacing(ui: &mut Ui, object: &Object, form: &mut MeshForm, commands: &mut Vec
             let field = NumberField {
                 label,
                 name: &name,
-                tooltip: "Millimetres per unit of the mesh's file",
+                tooltip: "Millimetres per unit of the mesh's file, about the mesh's own origin",
                 speed: 0.005,
                 decimals: 6,
                 ..NumberField::default()

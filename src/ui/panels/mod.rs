@@ -17,7 +17,7 @@ mod references;
 mod scene_view;
 mod section;
 
-use egui::{Frame, Panel, Ui};
+use egui::{Frame, Panel, Ui, UiBuilder};
 
 use crate::scene::ObjectId;
 use crate::session::{Command, Session};
@@ -27,7 +27,7 @@ pub const WIDTHS: std::ops::RangeInclusive<f32> = 240.0..=420.0;
 
 /// What of the output is always in sight: its title and a row of the matrix.
 const LEAST_OUTPUT_HEIGHT: f32 = 60.0;
-const FIRST_OUTPUT_HEIGHT: f32 = 216.0;
+const FIRST_OUTPUT_HEIGHT: f32 = 190.0;
 /// Of the panel, for the output at most.
 const MOST_OUTPUT: f32 = 0.7;
 
@@ -56,6 +56,15 @@ impl PanelState {
 }
 
 pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
+    // A child of its own: nothing in it, however wide, makes the panel wider than it was dragged.
+    let rect = ui.available_rect_before_wrap();
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
+    inside.set_clip_rect(rect.intersect(ui.clip_rect()));
+    parts(&mut inside, session, state, commands);
+    ui.advance_cursor_after_rect(rect);
+}
+
+fn parts(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
     let most = (ui.available_height() * MOST_OUTPUT).max(LEAST_OUTPUT_HEIGHT);
     let frame = Frame::NONE.inner_margin(egui::Margin { left: 0, right: 8, top: 4, bottom: 4 });
     let panel = if state.output.folded {

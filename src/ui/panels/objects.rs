@@ -35,7 +35,7 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
 fn selected_opacity(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let Some(object) = session.selected().and_then(|id| session.scene().object(id)) else { return };
     let count = session.selection().len();
-    let text = if count > 1 { format!("of {count} objects") } else { "object".to_owned() };
+    let text = if count > 1 { format!("of {count} objects") } else { "opacity".to_owned() };
     if let Some(opacity) = list::opacity(ui, "Object opacity", &text, object.opacity) {
         commands.push(Command::EditObject(object.id, ObjectChange::Opacity(opacity)));
     }

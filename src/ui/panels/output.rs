@@ -34,10 +34,10 @@ fn header(ui: &mut Ui, session: &Session, state: &mut OutputState, commands: &mu
             state.folded = !state.folded;
         }
         let width = (ui.available_width() - 56.0).max(40.0);
-        let layout = egui::Layout::left_to_right(egui::Align::Center).with_main_justify(true);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
         ui.allocate_ui_with_layout(egui::Vec2::new(width, 22.0), layout, |ui| {
-            let text = title(session);
-            ui.add(egui::Label::new(text).truncate().halign(egui::Align::LEFT));
+            ui.set_width(width);
+            ui.add(egui::Label::new(title(session)).truncate());
         });
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;

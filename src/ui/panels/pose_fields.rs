@@ -86,7 +86,7 @@ fn form_choice(ui: &mut Ui, form: &mut PoseForm) {
     let before = form.form;
     ui.horizontal(|ui| {
         ui.label("R as");
-        let width = ui.available_width();
+        let width = ui.available_width() - 4.0;
         let combo = egui::ComboBox::new("rotation form", "").selected_text(before.title()).width(width);
         let response = combo.show_ui(ui, |ui| {
             for (choice, title, meaning) in RotationForm::ALL {

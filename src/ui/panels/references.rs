@@ -73,15 +73,17 @@ fn reference_row(ui: &mut Ui, session: &Session, reference: &Reference, commands
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         line_sample(ui, reference.visible);
+        let width = (ui.available_width() - 52.0).max(40.0);
         ui.allocate_ui_with_layout(
-            Vec2::new((ui.available_width() - 52.0).max(40.0), list::ROW_HEIGHT),
-            Layout::left_to_right(Align::Center).with_main_justify(true),
+            Vec2::new(width, list::ROW_HEIGHT),
+            Layout::left_to_right(Align::Center),
             |ui| {
+                ui.set_width(width);
                 let text = RichText::new(&reference.name);
                 let text = if reference.visible { text } else { text.weak() };
                 let tooltip =
                     format!("{} poses to compare with, drawn as dashed outlines", reference.poses.len());
-                let label = egui::Label::new(text).truncate().halign(Align::LEFT);
+                let label = egui::Label::new(text).truncate();
                 ui.add(label).on_hover_text(tooltip);
             },
         );

@@ -3,11 +3,11 @@
 use egui::collapsing_header::CollapsingState;
 use egui::{Align, Id, Layout, Rect, RichText, Sense, Shape, Ui, UiBuilder, Vec2, pos2};
 
-const HEADER_HEIGHT: f32 = 26.0;
+const HEADER_HEIGHT: f32 = 24.0;
 
 /// A quiet caption over several sections.
 pub fn caption(ui: &mut Ui, text: &str) {
-    ui.add_space(8.0);
+    ui.add_space(5.0);
     ui.label(RichText::new(text.to_uppercase()).small().strong().weak());
 }
 
@@ -29,16 +29,16 @@ pub fn section(
     }
     paint_title(ui, rect, title, state.openness(ui.ctx()), response.hovered() || response.has_focus());
     let right = UiBuilder::new().max_rect(rect).layout(Layout::right_to_left(Align::Center));
-    ui.scope_builder(right, |ui| {
-        ui.spacing_mut().item_spacing.x = 2.0;
-        buttons(ui);
-    });
+    // Laid over the title, so that it takes no room of its own.
+    let mut over_title = ui.new_child(right);
+    over_title.spacing_mut().item_spacing.x = 2.0;
+    buttons(&mut over_title);
     let tooltip = if state.is_open() { "Fold" } else { "Unfold" };
     response.on_hover_text(tooltip);
     state.show_body_unindented(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::new(6.0, 5.0);
         body(ui);
-        ui.add_space(5.0);
+        ui.add_space(2.0);
     });
     let below = ui.cursor().top();
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
