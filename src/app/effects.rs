@@ -23,8 +23,9 @@ impl PinPose {
             Effect::ShowScenes => self.show_scenes(),
             Effect::SaveNow => self.save_now(),
             Effect::AskSaveAs => self.ask_save_as(),
-            Effect::ResetSceneView | Effect::ToggleTheme | Effect::RenameSelected => {}
+            Effect::ResetSceneView | Effect::ToggleTheme => {}
             Effect::TogglePalette => self.ui_state.toggle(Dialog::Palette),
+            Effect::RenameSelected => self.ui_state.rename_selected(&self.session),
             Effect::ZoomToObject => self.zoom_to_object(),
             Effect::FitPhoto => self.view.fit(),
             Effect::TogglePanels => self.ui_state.panels_hidden = !self.ui_state.panels_hidden,

@@ -7,6 +7,7 @@ mod memory;
 mod page_api;
 mod preferences;
 mod storage;
+mod time_zone;
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
@@ -28,6 +29,7 @@ pub use storage::{
     Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary, Storage,
     StorageFuture, StorageUse,
 };
+pub use time_zone::utc_offset_minutes;
 #[cfg(target_arch = "wasm32")]
 pub use web::{
     Background, default_storage, download, fetch_example, install_panic_hook, navigation_ms, new_scene_id,

@@ -12,6 +12,30 @@ pub enum Icon {
     Undo,
     Redo,
     Close,
+    /// More that can be done with this row.
+    Dots,
+    Plus,
+    Copy,
+    Reset,
+    ChevronRight,
+    ChevronDown,
+    /// Linked with others.
+    Chain,
+    Check,
+    /// One way of the screen: (x right, y down).
+    Arrow(i8, i8),
+    Nearer,
+    Farther,
+    /// About the screen's horizontal axis, the top away from the viewer or towards him.
+    Pitch {
+        forward: bool,
+    },
+    Yaw {
+        left: bool,
+    },
+    Roll {
+        left: bool,
+    },
 }
 
 /// A button of one icon; `label` is its name for those who do not see it.
@@ -30,7 +54,7 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, tooltip: &str, enabled:
 }
 
 /// Draws within a square; positions below are in 14ths of it.
-fn draw(painter: &Painter, icon: Icon, rect: Rect, stroke: Stroke) {
+pub fn draw(painter: &Painter, icon: Icon, rect: Rect, stroke: Stroke) {
     let at = |x: f32, y: f32| rect.min + Vec2::new(x, y) * (rect.width() / 14.0);
     let line = |points: &[(f32, f32)]| {
         painter.line(points.iter().map(|&(x, y)| at(x, y)).collect(), stroke);
@@ -82,6 +106,97 @@ fn draw(painter: &Painter, icon: Icon, rect: Rect, stroke: Stroke) {
             line(&[(3.0, 3.0), (11.0, 11.0)]);
             line(&[(11.0, 3.0), (3.0, 11.0)]);
         }
+        Icon::Dots => [2.5, 7.0, 11.5].into_iter().for_each(|x| {
+            painter.circle_filled(at(x, 7.0), 1.3 * unit, stroke.color);
+        }),
+        Icon::Plus => {
+            line(&[(7.0, 2.0), (7.0, 12.0)]);
+            line(&[(2.0, 7.0), (12.0, 7.0)]);
+        }
+        Icon::Copy => {
+            line(&[(9.0, 4.5), (9.0, 1.5), (1.5, 1.5), (1.5, 9.0), (4.5, 9.0)]);
+            line(&[(5.0, 5.0), (12.5, 5.0), (12.5, 12.5), (5.0, 12.5), (5.0, 4.4)]);
+        }
+        Icon::Reset => {
+            line(&arc((7.0, 7.5), 4.8, -60.0, 210.0));
+            line(&[(9.4, 0.6), (9.6, 3.4), (6.8, 4.0)]);
+        }
+        Icon::Chain => {
+            line(&[(6.0, 4.5), (2.5, 4.5), (1.0, 7.0), (2.5, 9.5), (6.0, 9.5)]);
+            line(&[(8.0, 4.5), (11.5, 4.5), (13.0, 7.0), (11.5, 9.5), (8.0, 9.5)]);
+            line(&[(4.5, 7.0), (9.5, 7.0)]);
+        }
+        Icon::ChevronRight => line(&[(5.0, 3.0), (9.5, 7.0), (5.0, 11.0)]),
+        Icon::ChevronDown => line(&[(3.0, 5.0), (7.0, 9.5), (11.0, 5.0)]),
+        Icon::Check => line(&[(2.0, 7.5), (5.5, 11.0), (12.0, 3.0)]),
+        Icon::Arrow(..) | Icon::Nearer | Icon::Farther => draw_step(icon, &line),
+        Icon::Pitch { .. } | Icon::Yaw { .. } | Icon::Roll { .. } => draw_turn(icon, &line),
+    }
+}
+
+/// Draws a line through points given in 14ths.
+type Line<'a> = dyn Fn(&[(f32, f32)]) + 'a;
+
+fn draw_step(icon: Icon, line: &Line<'_>) {
+    match icon {
+        Icon::Arrow(x, y) => {
+            let (x, y) = (f32::from(x), f32::from(y));
+            let at = |along: f32, aside: f32| (7.0 + along * x - aside * y, 7.0 + along * y + aside * x);
+            line(&[at(-5.0, 0.0), at(5.0, 0.0)]);
+            line(&[at(1.0, -4.0), at(5.0, 0.0), at(1.0, 4.0)]);
+        }
+        // A plus and a minus in a ring: larger, smaller.
+        Icon::Nearer | Icon::Farther => {
+            line(&arc((7.0, 7.0), 5.8, 0.0, 360.0));
+            line(&[(4.2, 7.0), (9.8, 7.0)]);
+            if icon == Icon::Nearer {
+                line(&[(7.0, 4.2), (7.0, 9.8)]);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// An arc with a head at its end; a turn about an axis in the screen is a flat one.
+fn draw_turn(icon: Icon, line: &Line<'_>) {
+    let turned = |points: &[(f32, f32)], turn: &dyn Fn(f32, f32) -> (f32, f32)| {
+        line(&points.iter().map(|&(x, y)| turn(x, y)).collect::<Vec<_>>());
+    };
+    let clockwise = arc((7.0, 8.0), 5.0, 170.0, 350.0);
+    let head = [(12.8, 3.6), (12.0, 7.4), (8.4, 6.2)];
+    match icon {
+        Icon::Roll { left } => {
+            let turn = |x: f32, y: f32| if left { (14.0 - x, y) } else { (x, y) };
+            turned(&clockwise, &turn);
+            turned(&head, &turn);
+        }
+        Icon::Yaw { left } => {
+            let turn = |x: f32, y: f32| if left { (14.0 - x, y) } else { (x, y) };
+            line(&[(7.0, 1.0), (7.0, 5.0)]);
+            turned(
+                &arc((7.0, 6.5), 5.5, 20.0, 160.0)
+                    .iter()
+                    .rev()
+                    .map(|&(x, y)| (x, 4.5 + y * 0.5))
+                    .collect::<Vec<_>>(),
+                &turn,
+            );
+            turned(&[(9.4, 7.4), (12.6, 7.9), (11.4, 11.2)], &turn);
+        }
+        Icon::Pitch { forward } => {
+            let turn = |x: f32, y: f32| if forward { (y, 14.0 - x) } else { (y, x) };
+            line(&[(1.0, 7.0), (4.0, 7.0)]);
+            turned(
+                &arc((7.0, 6.5), 5.5, 20.0, 160.0)
+                    .iter()
+                    .rev()
+                    .map(|&(x, y)| (x, 4.5 + y * 0.5))
+                    .collect::<Vec<_>>(),
+                &turn,
+            );
+            turned(&[(9.4, 7.4), (12.6, 7.9), (11.4, 11.2)], &turn);
+        }
+        _ => {}
     }
 }
 

@@ -1,10 +1,9 @@
 //! The interface: panels, viewport, dialogs. Reads a [`Session`] and returns commands; changes nothing itself.
 
-mod camera_panel;
+mod command_button;
 mod dialogs;
 mod icons;
-mod pose_panel;
-mod scene_panel;
+mod panels;
 mod scenes_dialog;
 mod shortcuts;
 mod theme;
@@ -33,7 +32,7 @@ pub struct UiState {
     pub open: Option<Dialog>,
     pub toasts: Toasts,
     pub scenes_dialog: scenes_dialog::State,
-    camera_form: camera_panel::CameraForm,
+    panels: panels::PanelState,
     /// Where the viewport was in the last frame.
     pub viewport: Option<ViewportPlace>,
 }
@@ -47,6 +46,12 @@ pub enum Dialog {
 }
 
 impl UiState {
+    /// Opens the selected object's name for editing, in the list.
+    pub fn rename_selected(&mut self, session: &Session) {
+        self.panels_hidden = false;
+        self.panels.rename_selected(session);
+    }
+
     pub fn toggle(&mut self, dialog: Dialog) {
         self.open = if self.open == Some(dialog) { None } else { Some(dialog) };
     }
@@ -114,9 +119,10 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     if !state.panels_hidden && !session.scene().is_empty() {
         Panel::left("side panel")
             .frame(theme::panel_frame())
-            .exact_size(theme::PANEL_WIDTH)
-            .resizable(false)
-            .show(ui, |ui| side_panel(ui, session, &mut state.camera_form, &mut asked.commands));
+            .default_size(theme::PANEL_WIDTH)
+            .size_range(panels::WIDTHS)
+            .resizable(true)
+            .show(ui, |ui| panels::draw(ui, session, &mut state.panels, &mut asked.commands));
     }
     CentralPanel::default().frame(Frame::NONE.fill(theme::VIEWPORT_BACKGROUND)).show(ui, |ui| {
         if session.scene().is_empty() {
@@ -130,24 +136,4 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     scenes_dialog::draw(ui.ctx(), around, &mut state.scenes_dialog, &mut asked.scene_requests);
     state.toasts.draw(ui.ctx());
     asked
-}
-
-fn side_panel(
-    ui: &mut egui::Ui,
-    session: &Session,
-    camera_form: &mut camera_panel::CameraForm,
-    commands: &mut Vec<Command>,
-) {
-    // What changes under the hand stays in sight, however long the lists are.
-    Panel::bottom("side panel foot").frame(Frame::NONE).show(ui, |ui| {
-        scene_panel::overlay(ui, session, commands);
-        pose_panel::draw(ui, session, commands);
-    });
-    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        scene_panel::photos(ui, session, commands);
-        camera_panel::draw(ui, session, camera_form, commands);
-        scene_panel::objects(ui, session, commands);
-        scene_panel::references(ui, session, commands);
-        ui.add_space(8.0);
-    });
 }

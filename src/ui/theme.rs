@@ -111,12 +111,6 @@ pub fn overlay_frame() -> Frame {
         .inner_margin(Margin::symmetric(8, 4))
 }
 
-/// The title of a part of the side panel, and a little room before it.
-pub fn section(ui: &mut egui::Ui, title: &str) {
-    ui.add_space(10.0);
-    ui.label(RichText::new(title.to_uppercase()).small().strong().color(WEAK_TEXT));
-}
-
 pub fn color32(Rgb([red, green, blue]): Rgb) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }

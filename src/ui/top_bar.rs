@@ -2,9 +2,10 @@
 
 use egui::{Align, Button, Layout, MenuBar, RichText, Ui};
 
+use super::command_button::{command_button, tooltip};
 use super::icons::{Icon, icon_button};
 use super::{Asked, Saving, SceneRequest, Surroundings, shortcut_text, theme};
-use crate::session::{COMMANDS, Command, CommandId, CommandInfo, Menu, Session, Tool};
+use crate::session::{COMMANDS, Command, CommandId, Menu, Session, Tool};
 
 const MENUS: [(Menu, &str); 5] = [
     (Menu::File, "File"),
@@ -57,24 +58,6 @@ fn history_button(ui: &mut Ui, icon: Icon, id: CommandId, session: &Session, com
     let enabled = session.unavailable(id).is_none();
     if icon_button(ui, icon, id.info().text, &tooltip(id.info()), enabled).clicked() {
         commands.push(Command::Run(id));
-    }
-}
-
-/// A button of the command table: disabled, with the reason, where the command cannot be used.
-fn command_button(ui: &mut Ui, button: Button<'_>, info: &CommandInfo, session: &Session) -> bool {
-    let reason = session.unavailable(info.id);
-    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(tooltip(info));
-    let response = match reason {
-        Some(reason) => response.on_disabled_hover_text(format!("{}: {reason}", info.tooltip)),
-        None => response,
-    };
-    response.clicked()
-}
-
-fn tooltip(info: &CommandInfo) -> String {
-    match info.shortcut {
-        Some(shortcut) => format!("{} ({})", info.tooltip, shortcut_text(shortcut)),
-        None => info.tooltip.to_owned(),
     }
 }
 

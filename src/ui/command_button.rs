@@ -1,0 +1,53 @@
+//! Buttons of the command table: the same tooltip, shortcut and reason wherever a command is offered.
+
+use egui::{Button, Response, Ui};
+
+use super::icons::{Icon, icon_button};
+use super::shortcut_text;
+use crate::session::{Command, CommandId, CommandInfo, Session};
+
+/// A button of the command table: disabled, with the reason, where the command cannot be used.
+pub fn command_button(ui: &mut Ui, button: Button<'_>, info: &CommandInfo, session: &Session) -> bool {
+    let reason = session.unavailable(info.id);
+    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(tooltip(info));
+    let response = match reason {
+        Some(reason) => response.on_disabled_hover_text(format!("{}: {reason}", info.tooltip)),
+        None => response,
+    };
+    response.clicked()
+}
+
+/// The same as an entry of a menu, under a name of its own where the table's is too long.
+pub fn command_item(
+    ui: &mut Ui,
+    session: &Session,
+    id: CommandId,
+    text: Option<&str>,
+    commands: &mut Vec<Command>,
+) {
+    let info = id.info();
+    let mut button = Button::new(text.unwrap_or(info.text));
+    if let Some(shortcut) = info.shortcut {
+        button = button.shortcut_text(shortcut_text(shortcut));
+    }
+    if command_button(ui, button, info, session) {
+        commands.push(Command::Run(id));
+        ui.close();
+    }
+}
+
+/// The same as an icon.
+pub fn command_icon(ui: &mut Ui, icon: Icon, id: CommandId, session: &Session) -> Response {
+    let info = id.info();
+    match session.unavailable(id) {
+        None => icon_button(ui, icon, info.text, &tooltip(info), true),
+        Some(reason) => icon_button(ui, icon, info.text, &format!("{}: {reason}", info.tooltip), false),
+    }
+}
+
+pub fn tooltip(info: &CommandInfo) -> String {
+    match info.shortcut {
+        Some(shortcut) => format!("{} ({})", info.tooltip, shortcut_text(shortcut)),
+        None => info.tooltip.to_owned(),
+    }
+}
