@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use std::rc::Rc;
 
-use pinpose::app::{PinPose, Start};
+use pinpose::app::{PinPose, Start, StartWith};
 use pinpose::platform::{self, PageCalls};
 
 fn main() -> ExitCode {
@@ -25,9 +25,8 @@ fn open_window() -> ExitCode {
         let start = Start {
             // A window has no page that could call.
             calls: PageCalls::new(Rc::new(|| {})),
-            storage: platform::default_storage(platform::Slot::Current),
-            restore: true,
-            load_example: false,
+            storage: platform::default_storage(),
+            with: StartWith::LastOpen,
         };
         Ok(Box::new(PinPose::new(creation, start)))
     });

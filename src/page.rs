@@ -6,8 +6,8 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 
-use crate::app::{PinPose, Start};
-use crate::platform::{self, PageAnswer, PageCall, PageCalls, Perf, Slot};
+use crate::app::{PinPose, Start, StartWith};
+use crate::platform::{self, PageAnswer, PageCall, PageCalls, Perf};
 
 /// Starts the program on a canvas; resolves when its first frame is drawn.
 ///
@@ -33,14 +33,13 @@ pub async fn start(canvas: HtmlCanvasElement, options: JsValue) -> Result<(), Js
         if bare {
             return Ok(Box::new(Bare { calls, start_ms: 0.0 }));
         }
-        let load_example = platform::page_parameter("example").is_some();
-        let slot = if load_example { Slot::Example } else { Slot::Current };
-        let start = Start {
-            calls,
-            storage: platform::default_storage(slot),
-            restore: !load_example && platform::page_parameter("empty").is_none(),
-            load_example,
+        let has = |parameter| platform::page_parameter(parameter).is_some();
+        let with = match (has("example"), has("empty")) {
+            (true, _) => StartWith::Example,
+            (false, true) => StartWith::Nothing,
+            (false, false) => StartWith::LastOpen,
         };
+        let start = Start { calls, storage: platform::default_storage(), with };
         Ok(Box::new(PinPose::new(creation, start)))
     });
     runner.start(canvas, web_options, create).await?;

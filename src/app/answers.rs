@@ -156,7 +156,7 @@ impl PinPose {
             center: self.view.center.to_array(),
             viewport,
             panels: !self.ui_state.panels_hidden,
-            busy: self.loading.busy_text().is_some(),
+            busy: self.loading.busy_text().is_some() || self.scenes.is_switching(),
             saved: self.autosave.state(&self.session) == Saving::Saved,
             question,
             notices: self.ui_state.toasts.texts().map(str::to_owned).collect(),

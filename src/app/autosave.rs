@@ -1,11 +1,15 @@
-//! Keeps the scene in storage: within a second of a change, one save at a time, never half a gesture.
+//! Keeps the open scene in storage: within a second of a change, one save at a time, never half a gesture.
+//!
+//! What is saved is the settled scene, without the gesture under way. When the page is about to go, its document is put
+//! aside at once in a journal, so that what is lost is at most that gesture.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use crate::formats::{Keep, write_document};
-use crate::platform::{self, Saved, SavedAsset, Storage};
+use crate::formats::{Document, Keep, ViewSettings, write_document};
+use crate::platform::{self, Journal, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, Storage};
+use crate::scene::{Scene, file_stem};
 use crate::session::Session;
 use crate::ui::Saving;
 
@@ -14,141 +18,268 @@ const QUIET_MS: f64 = 250.0;
 /// ...or at the latest after so long.
 const LATEST_MS: f64 = 800.0;
 
-type Slot<T> = Rc<RefCell<Option<T>>>;
-
 pub struct Autosave {
+    /// Shared with what is called when the page goes, and with a save that runs.
+    keeper: Rc<RefCell<Keeper>>,
+    /// When the first change came that is not saved, and the last one.
+    unsaved_since_ms: f64,
+    changed_at_ms: f64,
+}
+
+/// What came of a save that has ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Finished {
+    /// `first`: there was nothing under this id before.
+    Saved {
+        first: bool,
+    },
+    /// The scene was changed in another window: nothing was saved.
+    ChangedElsewhere,
+    Failed(String),
+}
+
+struct Keeper {
     storage: Rc<dyn Storage>,
     ctx: egui::Context,
+    /// Where the open scene is kept.
+    id: SceneId,
+    /// The settled scene as it was last seen: sharing photos and meshes, it is cheap to keep.
+    seen: Option<Seen>,
     /// The revision that is in storage.
     saved_revision: u64,
-    /// The revision that was last seen, and when it and the first unsaved one came.
-    seen_revision: u64,
-    changed_at_ms: f64,
-    unsaved_since_ms: f64,
-    saving: Option<u64>,
-    finished: Slot<Result<(), String>>,
+    /// The revision that could not be stored: it is tried again with the next change, not in a loop.
+    failed_revision: Option<u64>,
+    /// `changed_at_ms` of what is stored under `id`.
+    stored_ms: Option<f64>,
+    saving: bool,
+    /// While a scene is on its way in, nothing is saved.
+    held: bool,
+    finished: Option<Finished>,
     failure: Option<String>,
-    restored: Slot<Result<Option<Saved>, String>>,
-    restoring: bool,
+}
+
+struct Seen {
+    revision: u64,
+    scene: Scene,
+    view: ViewSettings,
 }
 
 impl Autosave {
-    pub fn new(storage: Rc<dyn Storage>, ctx: egui::Context) -> Self {
-        Self {
+    pub fn new(storage: Rc<dyn Storage>, ctx: egui::Context, id: SceneId) -> Self {
+        let keeper = Keeper {
             storage,
             ctx,
+            id,
+            seen: None,
             saved_revision: 0,
-            seen_revision: 0,
-            changed_at_ms: 0.0,
-            unsaved_since_ms: 0.0,
-            saving: None,
-            finished: Rc::default(),
+            failed_revision: None,
+            stored_ms: None,
+            saving: false,
+            held: false,
+            finished: None,
             failure: None,
-            restored: Rc::default(),
-            restoring: false,
-        }
+        };
+        let keeper = Rc::new(RefCell::new(keeper));
+        let leaving = keeper.clone();
+        platform::when_left(move || leave(&leaving));
+        Self { keeper, unsaved_since_ms: 0.0, changed_at_ms: 0.0 }
     }
 
-    /// Asks for what was saved.
-    pub fn restore(&mut self) {
-        self.restoring = true;
-        let (load, slot, ctx) = (self.storage.load(), self.restored.clone(), self.ctx.clone());
-        platform::spawn(async move {
-            let result = load.await;
-            *slot.borrow_mut() = Some(result);
-            ctx.request_repaint();
-        });
+    /// The scene that is open.
+    pub fn id(&self) -> SceneId {
+        self.keeper.borrow().id.clone()
     }
 
-    /// What was saved, once it is there.
-    pub fn take_restored(&mut self) -> Option<Result<Saved, String>> {
-        let result = self.restored.borrow_mut().take()?;
-        self.restoring = false;
-        result.transpose()
-    }
-
-    /// Saves when it is time to.
+    /// Looks at the session, and saves when it is time to.
     pub fn tick(&mut self, ctx: &egui::Context, session: &Session, now_ms: f64) {
-        self.take_finished();
-        self.notice_changes(session.revision(), now_ms);
-        let unsaved = session.revision() != self.saved_revision;
-        // While a gesture goes on, the scene is in between; while one save runs, the next waits.
-        if !unsaved || self.restoring || self.saving.is_some() || session.gesture_under_way() {
+        self.notice_changes(session, now_ms);
+        if !self.keeper.borrow().may_save() {
             return;
         }
         let due_ms = (self.changed_at_ms + QUIET_MS).min(self.unsaved_since_ms + LATEST_MS);
         if now_ms >= due_ms {
-            self.save(session);
+            save(&self.keeper);
         } else {
             ctx.request_repaint_after(Duration::from_secs_f64((due_ms - now_ms) / 1000.0));
         }
     }
 
-    /// The session is what is in storage: it was just brought back from there.
-    pub fn mark_saved(&mut self, session: &Session) {
-        self.saved_revision = session.revision();
-        self.seen_revision = self.saved_revision;
+    /// Saves at once what is not saved yet, after the save that runs.
+    pub fn save_now(&mut self, session: &Session, now_ms: f64) {
+        self.notice_changes(session, now_ms);
+        self.keeper.borrow_mut().failed_revision = None;
+        if self.keeper.borrow().may_save() {
+            save(&self.keeper);
+        }
+    }
+
+    /// Is everything that is worth it in storage?
+    pub fn is_saved(&self) -> bool {
+        self.keeper.borrow().unsaved().is_none()
+    }
+
+    /// What came of the last save, once.
+    pub fn take_finished(&mut self) -> Option<Finished> {
+        self.keeper.borrow_mut().finished.take()
+    }
+
+    pub fn is_saving(&self) -> bool {
+        self.keeper.borrow().saving
+    }
+
+    /// A scene is on its way in: until it is there, nothing is saved.
+    pub fn hold(&mut self) {
+        self.keeper.borrow_mut().held = true;
+    }
+
+    /// From now on the session is kept under this id. `stored_ms` is the `changed_at_ms` of what is stored there; the
+    /// session counts as saved.
+    pub fn begin(&mut self, id: SceneId, stored_ms: Option<f64>, session: &Session) {
+        let mut keeper = self.keeper.borrow_mut();
+        keeper.id = id;
+        keeper.stored_ms = stored_ms;
+        keeper.seen = None;
+        keeper.saved_revision = session.settled_revision();
+        keeper.failed_revision = None;
+        keeper.held = false;
+        keeper.finished = None;
+        keeper.failure = None;
+    }
+
+    /// What is in the session is not what is stored: save it with the next tick.
+    pub fn mark_unsaved(&mut self) {
+        self.keeper.borrow_mut().saved_revision = u64::MAX;
     }
 
     pub fn state(&self, session: &Session) -> Saving {
-        match &self.failure {
+        let keeper = self.keeper.borrow();
+        match &keeper.failure {
             Some(reason) => Saving::Failed(reason.clone()),
-            None if session.revision() == self.saved_revision => Saving::Saved,
+            None if session.revision() == keeper.saved_revision => Saving::Saved,
+            None if keeper.stored_ms.is_none() && session.scene().is_empty() => Saving::Saved,
             None => Saving::Pending,
         }
     }
 
-    fn notice_changes(&mut self, revision: u64, now_ms: f64) {
-        if revision != self.seen_revision {
-            if self.seen_revision == self.saved_revision {
-                self.unsaved_since_ms = now_ms;
-            }
-            self.seen_revision = revision;
-            self.changed_at_ms = now_ms;
+    fn notice_changes(&mut self, session: &Session, now_ms: f64) {
+        let mut keeper = self.keeper.borrow_mut();
+        let revision = session.settled_revision();
+        let seen = keeper.seen.as_ref().map_or(keeper.saved_revision, |seen| seen.revision);
+        if revision == seen {
+            return;
         }
+        if seen == keeper.saved_revision {
+            self.unsaved_since_ms = now_ms;
+        }
+        self.changed_at_ms = now_ms;
+        let scene = session.settled_scene().clone();
+        keeper.seen = Some(Seen { revision, scene, view: session.view_settings() });
+    }
+}
+
+impl Keeper {
+    fn unsaved(&self) -> Option<&Seen> {
+        // An empty scene that was never stored is nobody's work.
+        let is_work = |seen: &&Seen| self.stored_ms.is_some() || !seen.scene.is_empty();
+        self.seen.as_ref().filter(|seen| seen.revision != self.saved_revision).filter(is_work)
     }
 
-    fn save(&mut self, session: &Session) {
-        self.saving = Some(session.revision());
-        let save = self.storage.save(saved(session));
-        let (slot, ctx) = (self.finished.clone(), self.ctx.clone());
-        platform::spawn(async move {
-            let result = save.await;
-            *slot.borrow_mut() = Some(result);
-            ctx.request_repaint();
+    fn may_save(&self) -> bool {
+        let is_new = |seen: &Seen| Some(seen.revision) != self.failed_revision;
+        !self.held && !self.saving && self.unsaved().is_some_and(is_new)
+    }
+
+    fn take_result(&mut self, revision: u64, changed_at_ms: f64, result: Result<SaveOutcome, String>) {
+        self.saving = false;
+        self.failure = None;
+        self.failed_revision = None;
+        self.finished = Some(match result {
+            Ok(SaveOutcome::Saved) => {
+                self.saved_revision = revision;
+                let first = self.stored_ms.replace(changed_at_ms).is_none();
+                self.storage.remove_journal(&self.id);
+                Finished::Saved { first }
+            }
+            Ok(SaveOutcome::ChangedElsewhere) => {
+                self.failed_revision = Some(revision);
+                Finished::ChangedElsewhere
+            }
+            Err(reason) => {
+                self.failed_revision = Some(revision);
+                self.failure = Some(reason.clone());
+                Finished::Failed(reason)
+            }
         });
+        self.ctx.request_repaint();
+    }
+}
+
+/// The page is about to go: its document is put aside at once, and a save is begun, which may or may not come to its end.
+fn leave(keeper: &Rc<RefCell<Keeper>>) {
+    let keeper_now = keeper.borrow();
+    if keeper_now.held {
+        return;
+    }
+    let Some(unsaved) = keeper_now.unsaved() else { return };
+    let json = write_document(&unsaved.document());
+    if json.len() <= Journal::MAX_BYTES {
+        let journal = Journal { changed_at_ms: platform::now_ms(), json };
+        keeper_now.storage.write_journal(&keeper_now.id, &journal);
+    }
+    let may_save = keeper_now.may_save();
+    drop(keeper_now);
+    if may_save {
+        save(keeper);
+    }
+}
+
+fn save(keeper: &Rc<RefCell<Keeper>>) {
+    let mut keeper_now = keeper.borrow_mut();
+    let Some(unsaved) = keeper_now.unsaved() else { return };
+    let (revision, changed_at_ms) = (unsaved.revision, platform::now_ms());
+    let saved = unsaved.saved(changed_at_ms);
+    let save = keeper_now.storage.save(&keeper_now.id, saved, keeper_now.stored_ms);
+    keeper_now.saving = true;
+    drop(keeper_now);
+    let keeper = keeper.clone();
+    platform::spawn(async move {
+        let result = save.await;
+        keeper.borrow_mut().take_result(revision, changed_at_ms, result);
+    });
+}
+
+impl Seen {
+    fn document(&self) -> Document {
+        Document::from_scene(&self.scene, &self.view, Keep::Everything)
     }
 
-    fn take_finished(&mut self) {
-        let Some(result) = self.finished.borrow_mut().take() else { return };
-        if let Some(revision) = self.saving.take() {
-            // A failed save is tried again with the next change, not in a loop.
-            self.saved_revision = revision;
-            self.failure = result.err();
+    fn saved(&self, changed_at_ms: f64) -> Saved {
+        let asset = |key: String, file_name: &str, bytes: &std::sync::Arc<[u8]>| SavedAsset {
+            key,
+            file_name: file_name.to_owned(),
+            bytes: bytes.clone(),
+        };
+        let photos = self.scene.photos.iter().map(|photo| &photo.asset);
+        let meshes = self.scene.objects.iter().map(|object| &object.mesh);
+        let photos = photos.map(|photo| asset(photo.sha256.to_string(), &photo.file_name, &photo.bytes));
+        let meshes = meshes.map(|mesh| asset(mesh.sha256.to_string(), &mesh.file_name, &mesh.bytes));
+        Saved {
+            heading: heading(&self.scene, changed_at_ms),
+            json: write_document(&self.document()),
+            assets: photos.chain(meshes).collect(),
         }
     }
 }
 
-fn saved(session: &Session) -> Saved {
-    let scene = session.scene();
-    let photos = scene.photos.iter().map(|photo| {
-        let asset = &photo.asset;
-        SavedAsset {
-            key: asset.sha256.to_string(),
-            file_name: asset.file_name.clone(),
-            bytes: asset.bytes.clone(),
-        }
-    });
-    let meshes = scene.objects.iter().map(|object| {
-        let asset = &object.mesh;
-        SavedAsset {
-            key: asset.sha256.to_string(),
-            file_name: asset.file_name.clone(),
-            bytes: asset.bytes.clone(),
-        }
-    });
-    Saved {
-        json: write_document(&session.document(Keep::Everything)),
-        assets: photos.chain(meshes).collect(),
+/// What a list of scenes says of this one.
+pub fn heading(scene: &Scene, changed_at_ms: f64) -> SceneHeading {
+    let photo = scene.photos.first().map(|photo| file_stem(&photo.asset.file_name));
+    let object = scene.objects.first().map(|object| object.name.as_str());
+    SceneHeading {
+        name: scene.name.clone(),
+        subject: photo.or(object).unwrap_or_default().to_owned(),
+        changed_at_ms,
+        photo_count: scene.photos.len() as u32,
+        object_count: scene.objects.len() as u32,
     }
 }

@@ -3,7 +3,7 @@
 use super::PinPose;
 use crate::interact::object_rect;
 use crate::platform;
-use crate::session::{Effect, Notice, Session};
+use crate::session::{Effect, Notice};
 use crate::ui::Dialog;
 
 impl PinPose {
@@ -19,8 +19,10 @@ impl PinPose {
             Effect::ExportPicture(request) => self.export(request),
             Effect::CopyText(text) => self.ctx.copy_text(text),
             Effect::AskForPose => self.ui_state.open = Some(Dialog::PastePose),
-            Effect::NewScene => self.session = Session::default(),
-            Effect::ShowScenes | Effect::SaveNow | Effect::AskSaveAs => {}
+            Effect::NewScene => self.new_scene(),
+            Effect::ShowScenes => self.show_scenes(),
+            Effect::SaveNow => self.save_now(),
+            Effect::AskSaveAs => self.ask_save_as(),
             Effect::ResetSceneView => {}
             Effect::TogglePalette => self.ui_state.toggle(Dialog::Palette),
             Effect::ToggleTheme => {}

@@ -17,7 +17,9 @@ const LEAST_POINTS_OF_A_NOTCH: f32 = 40.0;
 impl PinPose {
     /// Keys act while no text is being edited and nothing is open that has keys of its own.
     pub(super) fn take_keys(&mut self, ctx: &egui::Context) {
-        let dialog_is_open = self.session.question().is_some() || self.ui_state.open.is_some();
+        let state = &self.ui_state;
+        let dialog_is_open =
+            self.session.question().is_some() || state.open.is_some() || state.scenes_dialog.is_open();
         if dialog_is_open || ctx.text_edit_focused() || egui::Popup::is_any_open(ctx) {
             return;
         }

@@ -43,6 +43,8 @@ struct Load {
     warnings: Vec<String>,
     files: u32,
     reply: Option<PageReply>,
+    /// An empty scene was asked for, to open a workspace in.
+    has_asked_for_room: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,10 +123,11 @@ impl Loading {
         self.loads.push(load);
     }
 
-    /// Brings back a saved scene.
-    fn start_saved(&mut self, saved: Saved) -> Result<(), String> {
-        let document =
+    /// Brings back a saved scene under its name, which may have been changed since.
+    pub fn start_saved(&mut self, saved: Saved, name: &str) -> Result<(), String> {
+        let mut document =
             crate::formats::read_document(saved.json.as_bytes()).map_err(|error| error.to_string())?;
+        name.clone_into(&mut document.name);
         let mut load = self.new_load(Batch::default(), None);
         load.opening = Some((document, Origin::Storage));
         for asset in saved.assets {
@@ -145,6 +148,7 @@ impl Loading {
             warnings: Vec::new(),
             files: 0,
             reply,
+            has_asked_for_room: false,
         }
     }
 
@@ -187,8 +191,8 @@ impl Loading {
         }
     }
 
-    /// Photos that were decoded, and loads that are complete.
-    fn poll(&mut self) -> (Vec<(Sha256, Arc<Pixels>)>, Vec<Load>) {
+    /// Photos that were decoded, and loads that are complete. While a scene `is_switching`, other files wait for it.
+    fn poll(&mut self, is_switching: bool) -> (Vec<(Sha256, Arc<Pixels>)>, Vec<Load>) {
         for arrival in self.arrived.take() {
             self.start(arrival);
         }
@@ -203,14 +207,18 @@ impl Loading {
                 load.take_done(&file, done);
             }
         }
-        let (complete, waiting) =
-            std::mem::take(&mut self.loads).into_iter().partition(|load| load.jobs_left == 0);
+        let is_next = |load: &Load| load.jobs_left == 0 && (!is_switching || load.is_of(Origin::Storage));
+        let (complete, waiting) = std::mem::take(&mut self.loads).into_iter().partition(is_next);
         self.loads = waiting;
         (decoded, complete)
     }
 }
 
 impl Load {
+    fn is_of(&self, origin: Origin) -> bool {
+        self.opening.as_ref().is_some_and(|(_, candidate)| *candidate == origin)
+    }
+
     fn take_done(&mut self, file: &NamedFile, done: Result<Done, String>) {
         match done {
             Ok(Done::Photo(asset, _)) => self.batch.photos.push(asset),
@@ -260,30 +268,20 @@ impl PinPose {
         });
     }
 
-    /// A scene that came out of the storage.
-    pub(super) fn take_restored(&mut self) {
-        match self.autosave.take_restored() {
-            None => {}
-            Some(Ok(saved)) => {
-                if let Err(error) = self.loading.start_saved(saved) {
-                    self.notify(Notice::error(format!("The saved scene cannot be opened: {error}")));
-                }
-            }
-            Some(Err(error)) => self.notify(Notice::error(error)),
-        }
-    }
-
     /// Gives complete loads to the session.
     pub(super) fn take_loaded(&mut self) {
-        let (decoded, complete) = self.loading.poll();
+        let (decoded, complete) = self.loading.poll(self.scenes.is_switching());
         for (sha256, pixels) in decoded {
             self.photos.insert(sha256, pixels);
         }
         for mut load in complete {
+            if load.is_of(Origin::Workspace) && !self.make_room(&mut load) {
+                self.loading.loads.push(load);
+                continue;
+            }
             load.sort();
-            let opening = load.opening.take();
-            let restored = opening.as_ref().is_some_and(|(_, origin)| *origin == Origin::Storage);
-            let command = match opening {
+            let restored = load.is_of(Origin::Storage);
+            let command = match load.opening.take() {
                 Some((document, _)) => Command::Open(Box::new(Opening {
                     document,
                     photos: load.batch.photos,
@@ -294,8 +292,8 @@ impl PinPose {
             };
             self.apply(command);
             if restored {
-                // What could not be read stays in storage until the user changes something.
-                self.autosave.mark_saved(&self.session);
+                // What could not be read stays in storage: a change goes into a scene of its own.
+                self.scene_opened(load.problems.is_empty());
             }
             load.warnings.into_iter().for_each(|warning| self.notify(Notice::warning(warning)));
             load.problems.iter().for_each(|problem| self.notify(Notice::error(problem.clone())));
@@ -305,6 +303,23 @@ impl PinPose {
                 reply.send(Ok(PageAnswer::Loaded(loaded))).ok();
             }
         }
+    }
+
+    /// A workspace opens in a scene of its own: the open one is kept. False while that one is being saved.
+    fn make_room(&mut self, load: &mut Load) -> bool {
+        if self.session.scene().is_empty() {
+            return true;
+        }
+        if self.scenes.is_switching() {
+            return false;
+        }
+        if !load.has_asked_for_room {
+            load.has_asked_for_room = true;
+            self.new_scene();
+            return self.session.scene().is_empty();
+        }
+        // The open scene cannot be saved, which was said. It can still be brought back by undo.
+        true
     }
 
     /// Makes sure that the shown photo's pixels are there or on their way.

@@ -13,18 +13,20 @@ mod loading;
 mod performance;
 mod photo_cache;
 mod pictures;
+mod scenes;
 mod widgets;
 
 use std::rc::Rc;
 use std::sync::{Arc, Mutex};
 
 use crate::interact::{PhotoGestures, PhotoView};
-use crate::platform::{self, PageCalls, Storage};
+use crate::platform::{self, PageCalls, SceneId, Storage};
 use crate::render::{Gpu, Renderer};
 use crate::session::{Command, Notice, Session};
 use crate::ui::{self, SharedRenderer, UiState};
 
 pub use jobs::run_job;
+pub use scenes::StartWith;
 
 /// The whole program.
 pub struct PinPose {
@@ -35,6 +37,7 @@ pub struct PinPose {
     loading: loading::Loading,
     photos: photo_cache::PhotoCache,
     autosave: autosave::Autosave,
+    scenes: scenes::Scenes,
     renderer: Option<SharedRenderer>,
     backend: String,
     calls: PageCalls,
@@ -51,9 +54,7 @@ pub struct PinPose {
 pub struct Start {
     pub calls: PageCalls,
     pub storage: Rc<dyn Storage>,
-    /// Bring back what was open when the program was last left.
-    pub restore: bool,
-    pub load_example: bool,
+    pub with: StartWith,
 }
 
 impl PinPose {
@@ -70,6 +71,8 @@ impl PinPose {
             watch_device(&state.device);
         }
         let backend = gpu_state.map(|state| backend_name(&state.adapter)).unwrap_or_default();
+        let is_example = start.with == StartWith::Example;
+        let first_id = if is_example { SceneId::example() } else { platform::new_scene_id() };
         let mut app = Self {
             session: Session::default(),
             view: PhotoView::default(),
@@ -77,7 +80,8 @@ impl PinPose {
             ui_state: UiState::default(),
             loading: loading::Loading::new(ctx),
             photos: photo_cache::PhotoCache::default(),
-            autosave: autosave::Autosave::new(start.storage, ctx.clone()),
+            autosave: autosave::Autosave::new(start.storage.clone(), ctx.clone(), first_id),
+            scenes: scenes::Scenes::new(start.storage, ctx),
             renderer,
             backend,
             calls: start.calls,
@@ -88,12 +92,7 @@ impl PinPose {
             events: events::Events::default(),
             pointer: None,
         };
-        if start.restore {
-            app.autosave.restore();
-        }
-        if start.load_example {
-            app.loading.fetch_example();
-        }
+        app.start_with(start.with);
         app
     }
 
@@ -122,7 +121,7 @@ impl PinPose {
 impl eframe::App for PinPose {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
         self.performance.begin_frame(frame.info().cpu_usage);
-        self.take_restored();
+        self.tick_scenes();
         self.take_loaded();
         self.take_dropped(ctx);
         self.answer_calls(ctx);
@@ -137,12 +136,23 @@ impl eframe::App for PinPose {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
         let cursor_pixel = self.pointer.map(|position| self.view.image_from_viewport(position));
+        let open_scene = self.autosave.id();
         let around = ui::Surroundings {
             view: &self.view,
             renderer: self.renderer.as_ref(),
             pixels,
             saving: self.autosave.state(&self.session),
-            busy: self.loading.busy_text(),
+            busy: self
+                .loading
+                .busy_text()
+                .or_else(|| self.scenes.is_opening().then(|| "Opening…".to_owned())),
+            scenes: self.scenes.list(),
+            store: ui::StoreView {
+                open_scene: Some(&open_scene),
+                is_opening: self.scenes.is_opening(),
+                usage: self.scenes.usage(),
+                now_ms: platform::now_ms(),
+            },
             update_ready: platform::update_offer().is_some(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
             under_cursor: self.hit_under_cursor(cursor_pixel),
@@ -157,10 +167,18 @@ impl eframe::App for PinPose {
         if asked.apply_update {
             platform::reload();
         }
+        if !asked.scene_requests.is_empty() {
+            asked.scene_requests.into_iter().for_each(|request| self.take_scene_request(request));
+            ui.ctx().request_repaint();
+        }
         if !asked.commands.is_empty() {
             asked.commands.into_iter().for_each(|command| self.apply(command));
             ui.ctx().request_repaint();
         }
+    }
+
+    fn on_exit(&mut self) {
+        self.autosave.save_now(&self.session, platform::now_ms());
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

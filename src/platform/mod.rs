@@ -3,7 +3,9 @@
 //! A facade with one implementation for the page and one for the desktop, and a store in memory for tests. Imports none
 //! of our own rooms.
 
+mod memory;
 mod page_api;
+mod preferences;
 mod storage;
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -11,20 +13,26 @@ mod native;
 #[cfg(target_arch = "wasm32")]
 mod web;
 
+pub use memory::MemoryStorage;
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
-    Background, default_storage, download, fetch_example, navigation_ms, now_ms, page_parameter,
-    page_version, pick_files, reload, report_crash, send_event, spawn, update_offer, wasm_bytes,
+    Background, FolderStorage, default_storage, download, fetch_example, navigation_ms, new_scene_id, now_ms,
+    page_parameter, page_version, pick_files, reload, report_crash, send_event, spawn, update_offer,
+    wasm_bytes, when_left,
 };
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
 };
-pub use storage::{MemoryStorage, Saved, SavedAsset, Storage, StorageFuture};
+pub use preferences::{keep_preferences_in_memory, read_preference, write_preference};
+pub use storage::{
+    Journal, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture,
+    StorageUse,
+};
 #[cfg(target_arch = "wasm32")]
 pub use web::{
-    Background, default_storage, download, fetch_example, install_panic_hook, navigation_ms, now_ms,
-    page_parameter, page_version, pick_files, reload, report_crash, send_event, spawn, update_offer,
-    wasm_bytes, watch_for_updates,
+    Background, default_storage, download, fetch_example, install_panic_hook, navigation_ms, new_scene_id,
+    now_ms, page_parameter, page_version, pick_files, reload, report_crash, send_event, spawn, update_offer,
+    wasm_bytes, watch_for_updates, when_left,
 };
 
 /// A file that the user picked or dropped.
@@ -40,22 +48,6 @@ pub type Wake = std::rc::Rc<dyn Fn()>;
 /// A newer page is ready to take over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UpdateOffer;
-
-/// Under which name a scene is kept; the example has its own, so that trying it never touches anybody's work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slot {
-    Current,
-    Example,
-}
-
-impl Slot {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Current => "current",
-            Self::Example => "example",
-        }
-    }
-}
 
 /// Where the example is, relative to the page.
 const EXAMPLE_PATH: &str = "demo/example.zip";

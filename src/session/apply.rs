@@ -15,8 +15,10 @@ impl Session {
             Command::ImportMasks(images) => self.import_masks(&images),
             Command::Open(opening) => Ok(self.open(*opening, now_ms)),
             Command::Answer(answer) => self.answer(answer, now_ms),
-            Command::RenameScene(name) => self.change("Rename scene", |scene| scene.name = name),
-
+            Command::RenameScene(name) => {
+                self.name_scene(&name);
+                Ok(Vec::new())
+            }
             Command::ShowPhoto(photo) => self.show_photo(photo),
             Command::Select(object) => self.select(object),
             Command::SelectAlso(object) => self.select_also(object),
@@ -103,6 +105,16 @@ impl Session {
                 Ok(Vec::new())
             }
             Command::ReturnTo(entry) => self.return_to(&entry, now_ms),
+        }
+    }
+
+    /// Names the scene in all of its history: what it is called is no step of the work.
+    fn name_scene(&mut self, name: &str) {
+        self.finish_gesture();
+        if self.scene.name != name {
+            name.clone_into(&mut self.scene.name);
+            self.history.name_scenes(name);
+            self.touched();
         }
     }
 

@@ -22,8 +22,8 @@ pub enum Command {
     /// A saved scene in place of this one.
     Open(Box<Opening>),
     Answer(Answer),
+    /// What the scene is called; no undo step.
     RenameScene(String),
-
     ShowPhoto(PhotoId),
     Select(Option<ObjectId>),
     /// Adds an object to the selection, or takes it out.

@@ -90,6 +90,13 @@ impl History {
         Some(step.snapshot)
     }
 
+    /// Gives all scenes one name.
+    pub fn name_scenes(&mut self, name: &str) {
+        for step in self.undo.iter_mut().chain(&mut self.redo) {
+            name.clone_into(&mut step.snapshot.scene.name);
+        }
+    }
+
     pub fn undo_label(&self) -> Option<&str> {
         self.undo.back().map(|step| step.label.as_str())
     }

@@ -62,6 +62,8 @@ pub struct Session {
 struct Gesture {
     label: &'static str,
     before: Snapshot,
+    /// The revision of `before`.
+    revision: u64,
 }
 
 #[derive(Debug)]
@@ -75,11 +77,6 @@ struct Waiting {
 impl Session {
     pub fn scene(&self) -> &Scene {
         &self.scene
-    }
-
-    /// The scene without the gesture that is under way: what is worth saving.
-    pub fn settled_scene(&self) -> &Scene {
-        self.gesture.as_ref().map_or(&self.scene, |gesture| &gesture.before.scene)
     }
 
     /// The photo that is shown.
@@ -154,22 +151,32 @@ impl Session {
         self.revision
     }
 
-    /// The session as our own document.
-    pub fn document(&self, keep: Keep) -> Document {
-        self.document_of(&self.scene, keep)
+    /// The scene as it was before the gesture under way: what is worth keeping if that gesture is never ended.
+    pub fn settled_scene(&self) -> &Scene {
+        self.gesture.as_ref().map_or(&self.scene, |gesture| &gesture.before.scene)
     }
 
-    /// The same without the gesture that is under way.
+    /// The revision of [`Self::settled_scene`].
+    pub fn settled_revision(&self) -> u64 {
+        self.gesture.as_ref().map_or(self.revision, |gesture| gesture.revision)
+    }
+
     pub fn settled_document(&self, keep: Keep) -> Document {
-        self.document_of(self.settled_scene(), keep)
+        Document::from_scene(self.settled_scene(), &self.view_settings(), keep)
     }
 
-    fn document_of(&self, scene: &Scene, keep: Keep) -> Document {
+    /// What is on screen, for a document.
+    pub fn view_settings(&self) -> ViewSettings {
         let mut view = ViewSettings::of_look(&self.look);
         view.photo = self.photo.map(|id| id.0);
         view.selected = self.selected.map(|id| id.0);
         view.panes = self.panes.arrangement.name().to_owned();
         view.image_distance_mm = self.panes.image_distance_mm;
-        Document::from_scene(scene, &view, keep)
+        view
+    }
+
+    /// The session as our own document.
+    pub fn document(&self, keep: Keep) -> Document {
+        Document::from_scene(&self.scene, &self.view_settings(), keep)
     }
 }

@@ -31,7 +31,7 @@ impl Session {
 
     pub(super) fn begin_gesture(&mut self, label: &'static str) {
         self.finish_gesture();
-        self.gesture = Some(Gesture { label, before: self.snapshot() });
+        self.gesture = Some(Gesture { label, before: self.snapshot(), revision: self.revision });
     }
 
     pub(super) fn drag(&mut self, target: Target, pose: Pose, now_ms: f64) -> Applied {

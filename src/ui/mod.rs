@@ -5,6 +5,7 @@ mod dialogs;
 mod icons;
 mod pose_panel;
 mod scene_panel;
+mod scenes_dialog;
 mod shortcuts;
 mod theme;
 mod toasts;
@@ -15,8 +16,10 @@ mod welcome;
 use egui::{CentralPanel, Frame, Panel};
 
 use crate::interact::PhotoView;
+use crate::platform::{SceneId, SceneSummary, StorageUse};
 use crate::session::{Command, Session};
 
+pub use scenes_dialog::SceneRequest;
 pub use shortcuts::{pressed_commands, shortcut_text};
 pub use theme::apply_theme;
 pub use toasts::Toasts;
@@ -29,6 +32,7 @@ pub struct UiState {
     /// The window that is open over everything.
     pub open: Option<Dialog>,
     pub toasts: Toasts,
+    pub scenes_dialog: scenes_dialog::State,
     camera_form: camera_panel::CameraForm,
     /// Where the viewport was in the last frame.
     pub viewport: Option<ViewportPlace>,
@@ -65,6 +69,20 @@ pub struct Surroundings<'a> {
     /// The point of the photo under the cursor.
     pub cursor_pixel: Option<glam::DVec2>,
     pub dragging: bool,
+    /// The scenes that are stored, the one that was changed last first.
+    pub scenes: &'a [SceneSummary],
+    pub store: StoreView<'a>,
+}
+
+/// What is known of the store besides its scenes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct StoreView<'a> {
+    pub open_scene: Option<&'a SceneId>,
+    /// A scene is on its way in.
+    pub is_opening: bool,
+    pub usage: Option<StorageUse>,
+    /// Milliseconds since 1970, UTC.
+    pub now_ms: f64,
 }
 
 /// Is the scene in the browser's storage?
@@ -80,6 +98,7 @@ pub enum Saving {
 #[derive(Debug, Default)]
 pub struct Asked {
     pub commands: Vec<Command>,
+    pub scene_requests: Vec<SceneRequest>,
     pub apply_update: bool,
 }
 
@@ -100,12 +119,13 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     CentralPanel::default().frame(Frame::NONE.fill(theme::VIEWPORT_BACKGROUND)).show(ui, |ui| {
         if session.scene().is_empty() {
             state.viewport = None;
-            welcome::draw(ui, around, &mut asked.commands);
+            welcome::draw(ui, around, &mut asked);
         } else {
             state.viewport = Some(viewport::draw(ui, session, around, &mut asked.commands));
         }
     });
     dialogs::draw(ui.ctx(), session, state, &mut asked.commands);
+    scenes_dialog::draw(ui.ctx(), around, &mut state.scenes_dialog, &mut asked.scene_requests);
     state.toasts.draw(ui.ctx());
     asked
 }

@@ -3,7 +3,7 @@
 use egui::{Align, Button, Layout, MenuBar, RichText, Ui};
 
 use super::icons::{Icon, icon_button};
-use super::{Asked, Saving, Surroundings, shortcut_text, theme};
+use super::{Asked, Saving, SceneRequest, Surroundings, shortcut_text, theme};
 use crate::session::{COMMANDS, Command, CommandId, CommandInfo, Menu, Session, Tool};
 
 const MENUS: [(Menu, &str); 5] = [
@@ -96,10 +96,25 @@ fn status(ui: &mut Ui, session: &Session, around: &Surroundings<'_>, asked: &mut
         return;
     }
     match &around.saving {
-        Saving::Saved => ui.label(RichText::new("Saved in this browser").weak()),
-        Saving::Pending => ui.label(RichText::new("Saving…").weak()),
-        Saving::Failed(reason) => {
-            ui.label(RichText::new("Not saved").color(theme::ERROR)).on_hover_text(reason)
+        Saving::Saved => {
+            let label = RichText::new("Saved in this browser").weak();
+            let scenes = Button::new(label).frame_when_inactive(false);
+            if ui.add(scenes).on_hover_text("Show all scenes that are saved here").clicked() {
+                asked.scene_requests.push(SceneRequest::Show);
+            }
         }
-    };
+        Saving::Pending => {
+            ui.label(RichText::new("Saving…").weak());
+        }
+        Saving::Failed(reason) => not_saved(ui, reason, asked),
+    }
+}
+
+/// The way out is right beside the bad news.
+fn not_saved(ui: &mut Ui, reason: &str, asked: &mut Asked) {
+    let download = theme::primary_button("Download workspace");
+    if ui.add(download).on_hover_text("A file with everything in it, to open again later").clicked() {
+        asked.commands.push(Command::Run(CommandId::ExportWorkspace));
+    }
+    ui.label(RichText::new("Not saved in this browser").color(theme::ERROR)).on_hover_text(reason);
 }

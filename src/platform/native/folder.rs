@@ -1,13 +1,21 @@
-//! A saved scene as files in a folder.
+//! Scenes as files in a folder.
 
+mod record;
+
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::platform::storage::{Saved, SavedAsset, Storage, StorageFuture};
+use crate::platform::storage::{
+    Journal, SaveOutcome, Saved, SavedAsset, SceneId, SceneSummary, Storage, StorageFuture, StorageUse,
+    distinct, sort_scenes,
+};
+use record::{AssetLine, Record};
 
-/// `scene.json` and `assets/KEY_NAME`. The document is renamed into place last, so it never speaks of a file that is not there.
+/// `scenes/ID.scene` (what is said about a scene, and its document), `assets/SHA256` for all scenes, `journals/ID`,
+/// `last_open`. A scene is renamed into place as a whole and last, so it never speaks of a file that is not there.
 pub struct FolderStorage {
     folder: PathBuf,
 }
@@ -17,66 +25,217 @@ impl FolderStorage {
         Self { folder }
     }
 
+    fn scenes(&self) -> PathBuf {
+        self.folder.join("scenes")
+    }
+
     fn assets(&self) -> PathBuf {
         self.folder.join("assets")
     }
 
-    fn read(&self) -> io::Result<Option<Saved>> {
-        let json = match fs::read_to_string(self.folder.join("scene.json")) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            other => other?,
-        };
-        let mut assets = Vec::new();
-        for entry in fs::read_dir(self.assets())? {
-            let entry = entry?;
-            let stored_name = entry.file_name().to_string_lossy().into_owned();
-            let Some((key, file_name)) = stored_name.split_once('_') else { continue };
-            let bytes = Arc::from(fs::read(entry.path())?);
-            assets.push(SavedAsset { key: key.to_owned(), file_name: file_name.to_owned(), bytes });
-        }
-        Ok(Some(Saved { json, assets }))
+    fn scene_path(&self, id: &SceneId) -> PathBuf {
+        self.scenes().join(format!("{}.scene", file_name(id.as_str())))
     }
 
-    fn write(&self, saved: &Saved) -> io::Result<()> {
-        fs::create_dir_all(self.assets())?;
-        let mut needed = Vec::new();
-        for asset in &saved.assets {
-            let path = self.assets().join(format!("{}_{}", asset.key, base_name(&asset.file_name)));
+    fn journal_path(&self, id: &SceneId) -> PathBuf {
+        self.folder.join("journals").join(file_name(id.as_str()))
+    }
+
+    fn record(&self, id: &SceneId) -> io::Result<Option<Record>> {
+        match read_if_there(&self.scene_path(id))? {
+            Some(text) => Record::from_text(&text).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    fn records(&self) -> io::Result<Vec<(SceneId, Record)>> {
+        let mut records = Vec::new();
+        for path in files_in(&self.scenes())? {
+            let id = path.file_stem().unwrap_or_default().to_string_lossy();
+            if path.extension().is_some_and(|extension| extension == "scene") {
+                records.push((SceneId::new(&id), Record::from_text(&fs::read_to_string(&path)?)?));
+            }
+        }
+        Ok(records)
+    }
+
+    fn list_now(&self) -> io::Result<Vec<SceneSummary>> {
+        let summary = |(id, record): (SceneId, Record)| SceneSummary {
+            id,
+            bytes: record.bytes(),
+            heading: record.heading,
+        };
+        let mut scenes: Vec<SceneSummary> = self.records()?.into_iter().map(summary).collect();
+        sort_scenes(&mut scenes);
+        Ok(scenes)
+    }
+
+    fn load_now(&self, id: &SceneId) -> io::Result<Option<Saved>> {
+        let Some(record) = self.record(id)? else { return Ok(None) };
+        let mut assets = Vec::new();
+        for asset in record.assets {
+            let bytes = fs::read(self.assets().join(file_name(&asset.key)))?;
+            assets.push(SavedAsset { key: asset.key, file_name: asset.file_name, bytes: Arc::from(bytes) });
+        }
+        Ok(Some(Saved { heading: record.heading, json: record.json, assets }))
+    }
+
+    fn save_now(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> io::Result<SaveOutcome> {
+        let stored_ms = self.record(id)?.map(|record| record.heading.changed_at_ms);
+        if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
+            return Ok(SaveOutcome::ChangedElsewhere);
+        }
+        let mut assets = Vec::new();
+        for asset in distinct(&saved.assets) {
+            let path = self.assets().join(file_name(&asset.key));
             if !path.exists() {
                 write_whole(&path, &asset.bytes)?;
             }
-            needed.push(path);
+            assets.push(AssetLine {
+                key: asset.key.clone(),
+                bytes: asset.bytes.len() as u64,
+                file_name: asset.file_name.clone(),
+            });
         }
-        write_whole(&self.folder.join("scene.json"), saved.json.as_bytes())?;
-        for entry in fs::read_dir(self.assets())? {
-            let path = entry?.path();
+        self.write_record(id, &Record { heading: saved.heading, assets, json: saved.json })?;
+        self.remove_unneeded()?;
+        Ok(SaveOutcome::Saved)
+    }
+
+    fn write_record(&self, id: &SceneId, record: &Record) -> io::Result<()> {
+        write_whole(&self.scene_path(id), record.to_text().as_bytes())
+    }
+
+    fn copy_now(&self, id: &SceneId, copy: &SceneId, name: &str) -> io::Result<()> {
+        let Some(mut record) = self.record(id)? else { return Ok(()) };
+        name.clone_into(&mut record.heading.name);
+        self.write_record(copy, &record)
+    }
+
+    fn delete_now(&self, id: &SceneId) -> io::Result<()> {
+        remove_if_there(&self.scene_path(id))?;
+        remove_if_there(&self.journal_path(id))?;
+        self.remove_unneeded()
+    }
+
+    fn remove_unneeded(&self) -> io::Result<()> {
+        let assets = self.records()?.into_iter().flat_map(|(_, record)| record.assets);
+        let needed: BTreeSet<PathBuf> =
+            assets.map(|asset| self.assets().join(file_name(&asset.key))).collect();
+        for path in files_in(&self.assets())? {
             if !needed.contains(&path) {
                 fs::remove_file(path)?;
             }
         }
         Ok(())
     }
+
+    fn used_bytes(&self) -> io::Result<u64> {
+        let mut bytes = 0;
+        for folder in [self.scenes(), self.assets()] {
+            for path in files_in(&folder)? {
+                bytes += fs::metadata(path)?.len();
+            }
+        }
+        Ok(bytes)
+    }
 }
 
 impl Storage for FolderStorage {
-    fn load(&self) -> StorageFuture<Option<Saved>> {
-        let result = self.read().map_err(|error| format!("the saved scene cannot be read: {error}"));
-        Box::pin(async { result })
+    fn list(&self) -> StorageFuture<Vec<SceneSummary>> {
+        done(self.list_now(), "the saved scenes cannot be listed")
     }
 
-    fn save(&self, saved: Saved) -> StorageFuture<()> {
-        let result = self.write(&saved).map_err(|error| format!("the scene cannot be saved: {error}"));
-        Box::pin(async { result })
+    fn load(&self, id: &SceneId) -> StorageFuture<Option<Saved>> {
+        done(self.load_now(id), "the saved scene cannot be read")
+    }
+
+    fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome> {
+        done(self.save_now(id, saved, last_seen_ms), "the scene cannot be saved")
+    }
+
+    fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()> {
+        done(self.copy_now(id, id, name), "the scene cannot be renamed")
+    }
+
+    fn duplicate(&self, id: &SceneId, copy: &SceneId, name: &str) -> StorageFuture<()> {
+        done(self.copy_now(id, copy, name), "the scene cannot be copied")
+    }
+
+    fn delete(&self, id: &SceneId) -> StorageFuture<()> {
+        done(self.delete_now(id), "the scene cannot be deleted")
+    }
+
+    fn last_open(&self) -> StorageFuture<Option<SceneId>> {
+        let text = read_if_there(&self.folder.join("last_open"));
+        let id = text.map(|text| text.map(|text| SceneId::new(text.trim())));
+        done(id, "the saved scenes cannot be read")
+    }
+
+    fn set_last_open(&self, id: &SceneId) -> StorageFuture<()> {
+        let written = write_whole(&self.folder.join("last_open"), id.as_str().as_bytes());
+        done(written, "which scene was open cannot be saved")
+    }
+
+    fn usage(&self) -> StorageFuture<StorageUse> {
+        let used = self.used_bytes().map(|used_bytes| StorageUse { used_bytes, quota_bytes: None });
+        done(used, "the size of the saved scenes is not known")
+    }
+
+    fn write_journal(&self, id: &SceneId, journal: &Journal) {
+        write_whole(&self.journal_path(id), journal.to_text().as_bytes())
+            .unwrap_or_else(|error| log::warn!("the last changes were not put aside: {error}"));
+    }
+
+    fn read_journal(&self, id: &SceneId) -> Option<Journal> {
+        Journal::from_text(&fs::read_to_string(self.journal_path(id)).ok()?)
+    }
+
+    fn remove_journal(&self, id: &SceneId) {
+        remove_if_there(&self.journal_path(id))
+            .unwrap_or_else(|error| log::warn!("what was put aside is still there: {error}"));
     }
 }
 
+/// On the desktop everything is done at once.
+fn done<T: 'static>(result: io::Result<T>, what: &str) -> StorageFuture<T> {
+    let result = result.map_err(|error| format!("{what}: {error}"));
+    Box::pin(async { result })
+}
+
 /// A file is there as a whole or not at all.
-fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
     let unfinished = path.with_extension("unfinished");
     fs::write(&unfinished, bytes)?;
     fs::rename(unfinished, path)
 }
 
-fn base_name(file_name: &str) -> &str {
-    file_name.rsplit(['/', '\\']).next().unwrap_or(file_name)
+pub fn read_if_there(path: &Path) -> io::Result<Option<String>> {
+    match fs::read_to_string(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        other => other.map(Some),
+    }
+}
+
+fn remove_if_there(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        other => other,
+    }
+}
+
+/// No files where there is no folder yet.
+fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        entries => entries?.map(|entry| Ok(entry?.path())).collect(),
+    }
+}
+
+/// A name that stays in its folder, whatever it was made of.
+pub fn file_name(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect()
 }

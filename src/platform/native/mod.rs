@@ -2,14 +2,17 @@
 
 mod background;
 mod folder;
+mod preferences;
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use super::{EXAMPLE_PATH, FileBytes, Slot, Storage, UpdateOffer};
+use super::{EXAMPLE_PATH, FileBytes, SceneId, Storage, UpdateOffer};
 
 pub use background::Background;
+pub use folder::FolderStorage;
+pub use preferences::{read_stored_preference, write_stored_preference};
 
 /// Milliseconds since 1970, UTC.
 pub fn now_ms() -> f64 {
@@ -83,12 +86,26 @@ pub fn update_offer() -> Option<UpdateOffer> {
 
 pub fn reload() {}
 
-/// The folder where this user's programs keep their data.
-pub fn default_storage(slot: Slot) -> Rc<dyn Storage> {
-    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/share"));
-    let data = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).or_else(home);
-    match data {
-        Some(data) => Rc::new(folder::FolderStorage::new(data.join("pinpose").join(slot.name()))),
+/// Where this user's scenes are kept.
+pub fn default_storage() -> Rc<dyn Storage> {
+    match data_folder() {
+        Some(folder) => Rc::new(FolderStorage::new(folder)),
         None => Rc::new(super::MemoryStorage::default()),
     }
+}
+
+/// An id that no other scene has.
+pub fn new_scene_id() -> SceneId {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
+    SceneId::new(&format!("scene-{since:x}"))
+}
+
+/// A window says by itself that it is closed; see `eframe::App::on_exit`.
+pub fn when_left(_leave: impl Fn() + 'static) {}
+
+/// The folder where this user's programs keep their data.
+fn data_folder() -> Option<PathBuf> {
+    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/share"));
+    let data = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).or_else(home);
+    data.map(|data| data.join("pinpose"))
 }

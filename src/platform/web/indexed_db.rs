@@ -1,52 +1,194 @@
-//! The saved scene in IndexedDB: one transaction a save, so that it is there as a whole or not at all.
+//! Scenes in IndexedDB: one transaction a save, so that a scene is there as a whole or not at all.
 //!
-//! Database `pinpose` version 1; `documents` holds `{json, assets}` by slot, `assets` holds `{name, bytes}` by the content's
-//! SHA-256. The crash screen reads the slot `current`, without this code.
+//! Database `pinpose` version 2. Version 1 had no `scenes`: its two documents get their headings when the database is
+//! opened. The crash screen reads `state` and `documents`, without this code.
+//!
+//! | store | key | value |
+//! |---|---|---|
+//! | `scenes` | scene id | what the list says of it, and the keys of its assets |
+//! | `documents` | scene id | `{json, assets}` |
+//! | `assets` | SHA-256 of the content | `{name, bytes}` |
+//! | `state` | `last_open` | a scene id |
+
+mod records;
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
-use std::sync::Arc;
 
 use idb::builder::{DatabaseBuilder, ObjectStoreBuilder};
-use idb::{Database, Query, TransactionMode};
-use js_sys::{Array, Object, Reflect, Uint8Array};
+use idb::{Database, Query, Transaction, TransactionMode};
+use js_sys::Reflect;
 use wasm_bindgen::prelude::*;
 
-use crate::platform::Slot;
-use crate::platform::storage::{Saved, SavedAsset, Storage, StorageFuture};
+use super::{browser_storage, describe};
+use crate::platform::storage::{
+    Journal, SaveOutcome, Saved, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture, StorageUse,
+    distinct, sort_scenes,
+};
 
+const SCENES: &str = "scenes";
 const DOCUMENTS: &str = "documents";
 const ASSETS: &str = "assets";
+const STATE: &str = "state";
+const ALL: [&str; 4] = [SCENES, DOCUMENTS, ASSETS, STATE];
+const LAST_OPEN: &str = "last_open";
+
+/// The only scene that version 1 knew, besides the example.
+const ONLY_SCENE_OF_VERSION_1: &str = "current";
 
 type Connection = Rc<RefCell<Option<Rc<Database>>>>;
 
+#[derive(Default)]
 pub struct IndexedDb {
-    slot: Slot,
     connection: Connection,
 }
 
 impl IndexedDb {
-    pub fn new(slot: Slot) -> Self {
-        Self { slot, connection: Connection::default() }
+    /// Runs one transaction; its error is told as "what: why".
+    fn run<T: 'static>(
+        &self,
+        what: &'static str,
+        mode: TransactionMode,
+        work: impl AsyncFnOnce(&Transaction) -> Result<T, idb::Error> + 'static,
+    ) -> StorageFuture<T> {
+        let connection = self.connection.clone();
+        Box::pin(async move {
+            let result = async {
+                let database = open(&connection).await?;
+                let transaction = database.transaction(&ALL, mode)?;
+                let result = work(&transaction).await?;
+                if mode == TransactionMode::ReadWrite {
+                    transaction.commit()?.await?;
+                }
+                Ok(result)
+            };
+            result.await.map_err(|error| format!("{what}: {}", in_words(&error)))
+        })
+    }
+
+    fn read<T: 'static>(
+        &self,
+        what: &'static str,
+        work: impl AsyncFnOnce(&Transaction) -> Result<T, idb::Error> + 'static,
+    ) -> StorageFuture<T> {
+        self.run(what, TransactionMode::ReadOnly, work)
+    }
+
+    fn write<T: 'static>(
+        &self,
+        what: &'static str,
+        work: impl AsyncFnOnce(&Transaction) -> Result<T, idb::Error> + 'static,
+    ) -> StorageFuture<T> {
+        self.run(what, TransactionMode::ReadWrite, work)
     }
 }
 
 impl Storage for IndexedDb {
-    fn load(&self) -> StorageFuture<Option<Saved>> {
-        let (slot, connection) = (self.slot, self.connection.clone());
-        Box::pin(async move {
-            load(&connection, slot).await.map_err(|error| format!("the saved scene cannot be read: {error}"))
+    fn list(&self) -> StorageFuture<Vec<SceneSummary>> {
+        self.read("the saved scenes cannot be listed", async |transaction| {
+            let store = transaction.object_store(SCENES)?;
+            let keys = store.get_all_keys(None, None)?.await?;
+            let values = store.get_all(None, None)?.await?;
+            let mut scenes: Vec<SceneSummary> =
+                keys.iter().zip(&values).filter_map(records::summary).collect();
+            sort_scenes(&mut scenes);
+            Ok(scenes)
         })
     }
 
-    fn save(&self, saved: Saved) -> StorageFuture<()> {
-        let (slot, connection) = (self.slot, self.connection.clone());
-        Box::pin(async move {
-            save(&connection, slot, saved)
-                .await
-                .map_err(|error| format!("the scene cannot be saved: {error}"))
+    fn load(&self, id: &SceneId) -> StorageFuture<Option<Saved>> {
+        let id = id.clone();
+        self.read("the saved scene cannot be read", async move |transaction| load(transaction, &id).await)
+    }
+
+    fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome> {
+        let id = id.clone();
+        self.write("the scene cannot be saved", async move |transaction| {
+            save(transaction, &id, saved, last_seen_ms).await
         })
+    }
+
+    fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()> {
+        let (id, name) = (id.clone(), name.to_owned());
+        self.write("the scene cannot be renamed", async move |transaction| {
+            copy_heading(transaction, &id, &id, &name).await
+        })
+    }
+
+    fn duplicate(&self, id: &SceneId, copy: &SceneId, name: &str) -> StorageFuture<()> {
+        let (id, copy, name) = (id.clone(), copy.clone(), name.to_owned());
+        self.write("the scene cannot be copied", async move |transaction| {
+            let documents = transaction.object_store(DOCUMENTS)?;
+            if let Some(document) = documents.get(key(&id))?.await? {
+                documents.put(&document, Some(&copy.as_str().into()))?.await?;
+            }
+            copy_heading(transaction, &id, &copy, &name).await
+        })
+    }
+
+    fn delete(&self, id: &SceneId) -> StorageFuture<()> {
+        self.remove_journal(id);
+        let id = id.clone();
+        self.write("the scene cannot be deleted", async move |transaction| {
+            transaction.object_store(SCENES)?.delete(key(&id))?.await?;
+            transaction.object_store(DOCUMENTS)?.delete(key(&id))?.await?;
+            remove_unneeded(transaction).await
+        })
+    }
+
+    /// A tab that is loaded again comes back to its own scene, a new one to the scene that was open last.
+    fn last_open(&self) -> StorageFuture<Option<SceneId>> {
+        let of_this_tab = browser_storage::read_of_tab(LAST_OPEN);
+        self.read("the saved scenes cannot be read", async move |transaction| {
+            let scenes = transaction.object_store(SCENES)?;
+            let last = transaction.object_store(STATE)?.get(Query::Key(LAST_OPEN.into()))?.await?;
+            let last = last.and_then(|id| id.as_string());
+            for id in [of_this_tab, last, Some(ONLY_SCENE_OF_VERSION_1.to_owned())].into_iter().flatten() {
+                let id = SceneId::new(&id);
+                if scenes.get_key(key(&id))?.await?.is_some() {
+                    return Ok(Some(id));
+                }
+            }
+            Ok(None)
+        })
+    }
+
+    fn set_last_open(&self, id: &SceneId) -> StorageFuture<()> {
+        browser_storage::write_of_tab(LAST_OPEN, id.as_str());
+        let id = id.clone();
+        self.write("which scene was open cannot be saved", async move |transaction| {
+            let state = transaction.object_store(STATE)?;
+            state.put(&id.as_str().into(), Some(&LAST_OPEN.into()))?.await?;
+            Ok(())
+        })
+    }
+
+    fn usage(&self) -> StorageFuture<StorageUse> {
+        Box::pin(async {
+            browser_storage::usage()
+                .await
+                .map_err(|error| format!("the browser does not say how much is stored: {}", describe(&error)))
+        })
+    }
+
+    fn ask_to_persist(&self) -> StorageFuture<()> {
+        Box::pin(async {
+            browser_storage::ask_to_persist().await;
+            Ok(())
+        })
+    }
+
+    fn write_journal(&self, id: &SceneId, journal: &Journal) {
+        browser_storage::write(&journal_key(id), &journal.to_text());
+    }
+
+    fn read_journal(&self, id: &SceneId) -> Option<Journal> {
+        Journal::from_text(&browser_storage::read(&journal_key(id))?)
+    }
+
+    fn remove_journal(&self, id: &SceneId) {
+        browser_storage::remove(&journal_key(id));
     }
 }
 
@@ -54,82 +196,140 @@ async fn open(connection: &Connection) -> Result<Rc<Database>, idb::Error> {
     if let Some(database) = connection.borrow().as_ref() {
         return Ok(database.clone());
     }
-    let database = DatabaseBuilder::new("pinpose")
-        .version(1)
+    let mut database = DatabaseBuilder::new("pinpose")
+        .version(2)
+        .add_object_store(ObjectStoreBuilder::new(SCENES))
         .add_object_store(ObjectStoreBuilder::new(DOCUMENTS))
         .add_object_store(ObjectStoreBuilder::new(ASSETS))
+        .add_object_store(ObjectStoreBuilder::new(STATE))
         .build()
         .await?;
+    // A newer PinPose in another tab needs the database for itself; the next access here says so.
+    let open_one = connection.clone();
+    database.on_version_change(move |_| {
+        if let Some(database) = open_one.borrow_mut().take() {
+            database.close();
+        }
+    });
     let database = Rc::new(database);
+    give_headings(&database).await?;
     *connection.borrow_mut() = Some(database.clone());
     Ok(database)
 }
 
-async fn load(connection: &Connection, slot: Slot) -> Result<Option<Saved>, idb::Error> {
-    let database = open(connection).await?;
-    let transaction = database.transaction(&[DOCUMENTS, ASSETS], TransactionMode::ReadOnly)?;
-    let document = transaction.object_store(DOCUMENTS)?.get(Query::Key(slot.name().into()))?.await?;
-    let Some(document) = document else { return Ok(None) };
-    let Some(json) = text_field(&document, "json") else { return Ok(None) };
-    let store = transaction.object_store(ASSETS)?;
-    let mut assets = Vec::new();
-    for key in asset_keys(&document) {
-        if let Some(value) = store.get(Query::Key(key.as_str().into()))?.await? {
-            assets.extend(read_asset(key, &value));
+/// Documents of version 1 become scenes.
+async fn give_headings(database: &Database) -> Result<(), idb::Error> {
+    let transaction = database.transaction(&ALL, TransactionMode::ReadWrite)?;
+    let (scenes, documents) = (transaction.object_store(SCENES)?, transaction.object_store(DOCUMENTS)?);
+    let known = scenes.get_all_keys(None, None)?.await?;
+    for id in documents.get_all_keys(None, None)?.await? {
+        if known.contains(&id) {
+            continue;
         }
-    }
-    Ok(Some(Saved { json, assets }))
-}
-
-/// What is stored is looked up within the transaction: another tab may have changed it.
-async fn save(connection: &Connection, slot: Slot, saved: Saved) -> Result<(), idb::Error> {
-    let database = open(connection).await?;
-    let transaction = database.transaction(&[DOCUMENTS, ASSETS], TransactionMode::ReadWrite)?;
-    let documents = transaction.object_store(DOCUMENTS)?;
-    let assets = transaction.object_store(ASSETS)?;
-    let keys = assets.get_all_keys(None, None)?.await?;
-    let stored: BTreeSet<String> = keys.iter().filter_map(JsValue::as_string).collect();
-
-    let mut needed: BTreeSet<String> = saved.assets.iter().map(|asset| asset.key.clone()).collect();
-    for asset in saved.assets.iter().filter(|asset| !stored.contains(&asset.key)) {
-        let bytes = Uint8Array::from(&*asset.bytes);
-        let value = object(&[("name", asset.file_name.as_str().into()), ("bytes", bytes.into())]);
-        assets.put(&value, Some(&asset.key.as_str().into()))?.await?;
-    }
-    let list: Array = needed.iter().map(|key| JsValue::from_str(key)).collect();
-    let document = object(&[("json", saved.json.as_str().into()), ("assets", list.into())]);
-    documents.put(&document, Some(&slot.name().into()))?.await?;
-
-    for document in documents.get_all(None, None)?.await? {
-        needed.extend(asset_keys(&document));
-    }
-    for key in stored.difference(&needed) {
-        assets.delete(Query::Key(key.as_str().into()))?.await?;
+        let Some(document) = documents.get(Query::Key(id.clone()))?.await? else { continue };
+        let Some(json) = records::text_field(&document, "json") else { continue };
+        let keys = records::asset_keys(&document);
+        let mut bytes = json.len() as u64;
+        for asset in &keys {
+            let stored = transaction.object_store(ASSETS)?.get(Query::Key(asset.as_str().into()))?.await?;
+            bytes += stored.as_ref().map_or(0, records::asset_bytes);
+        }
+        let heading = records::heading_of_document(&json, super::now_ms());
+        scenes.put(&records::scene(&heading, bytes, &keys), Some(&id))?.await?;
     }
     transaction.commit()?.await?;
     Ok(())
 }
 
-fn asset_keys(document: &JsValue) -> Vec<String> {
-    let keys = Reflect::get(document, &"assets".into()).unwrap_or(JsValue::UNDEFINED);
-    keys.dyn_into::<Array>()
-        .map_or_else(|_| Vec::new(), |keys| keys.iter().filter_map(|key| key.as_string()).collect())
-}
-
-fn read_asset(key: String, value: &JsValue) -> Option<SavedAsset> {
-    let bytes: Uint8Array = Reflect::get(value, &"bytes".into()).ok()?.dyn_into().ok()?;
-    Some(SavedAsset { key, file_name: text_field(value, "name")?, bytes: Arc::from(bytes.to_vec()) })
-}
-
-fn text_field(value: &JsValue, name: &str) -> Option<String> {
-    Reflect::get(value, &name.into()).ok()?.as_string()
-}
-
-fn object(fields: &[(&str, JsValue)]) -> JsValue {
-    let object = Object::new();
-    for (name, value) in fields {
-        // Setting a property of a plain object cannot fail.
-        Reflect::set(&object, &(*name).into(), value).ok();
+async fn load(transaction: &Transaction, id: &SceneId) -> Result<Option<Saved>, idb::Error> {
+    let scene = transaction.object_store(SCENES)?.get(key(id))?.await?;
+    let document = transaction.object_store(DOCUMENTS)?.get(key(id))?.await?;
+    let Some(document) = document else { return Ok(None) };
+    let Some(json) = records::text_field(&document, "json") else { return Ok(None) };
+    let store = transaction.object_store(ASSETS)?;
+    let mut assets = Vec::new();
+    for asset in records::asset_keys(&document) {
+        if let Some(value) = store.get(Query::Key(asset.as_str().into()))?.await? {
+            assets.extend(records::read_asset(asset, &value));
+        }
     }
-    object.into()
+    let heading = scene.as_ref().map_or_else(SceneHeading::default, records::heading);
+    Ok(Some(Saved { heading, json, assets }))
+}
+
+/// What is stored is looked up within the transaction: another tab may have changed it.
+async fn save(
+    transaction: &Transaction,
+    id: &SceneId,
+    saved: Saved,
+    last_seen_ms: Option<f64>,
+) -> Result<SaveOutcome, idb::Error> {
+    let scenes = transaction.object_store(SCENES)?;
+    let stored_ms = scenes.get(key(id))?.await?.map(|scene| records::heading(&scene).changed_at_ms);
+    if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
+        return Ok(SaveOutcome::ChangedElsewhere);
+    }
+    let assets = transaction.object_store(ASSETS)?;
+    let stored = stored_asset_keys(transaction).await?;
+    for asset in distinct(&saved.assets).filter(|asset| !stored.contains(&asset.key)) {
+        assets.put(&records::asset(asset), Some(&asset.key.as_str().into()))?.await?;
+    }
+    let keys: Vec<String> = distinct(&saved.assets).map(|asset| asset.key.clone()).collect();
+    let document = records::document(&saved.json, &keys);
+    transaction.object_store(DOCUMENTS)?.put(&document, Some(&id.as_str().into()))?.await?;
+    let scene = records::scene(&saved.heading, saved.bytes(), &keys);
+    scenes.put(&scene, Some(&id.as_str().into()))?.await?;
+    remove_unneeded(transaction).await?;
+    Ok(SaveOutcome::Saved)
+}
+
+async fn copy_heading(
+    transaction: &Transaction,
+    id: &SceneId,
+    copy: &SceneId,
+    name: &str,
+) -> Result<(), idb::Error> {
+    let scenes = transaction.object_store(SCENES)?;
+    let Some(scene) = scenes.get(key(id))?.await? else { return Ok(()) };
+    records::set_name(&scene, name);
+    scenes.put(&scene, Some(&copy.as_str().into()))?.await?;
+    Ok(())
+}
+
+async fn remove_unneeded(transaction: &Transaction) -> Result<(), idb::Error> {
+    let scenes = transaction.object_store(SCENES)?.get_all(None, None)?.await?;
+    let needed: BTreeSet<String> = scenes.iter().flat_map(records::asset_keys).collect();
+    let assets = transaction.object_store(ASSETS)?;
+    for unneeded in stored_asset_keys(transaction).await?.difference(&needed) {
+        assets.delete(Query::Key(unneeded.as_str().into()))?.await?;
+    }
+    Ok(())
+}
+
+async fn stored_asset_keys(transaction: &Transaction) -> Result<BTreeSet<String>, idb::Error> {
+    let keys = transaction.object_store(ASSETS)?.get_all_keys(None, None)?.await?;
+    Ok(keys.iter().filter_map(JsValue::as_string).collect())
+}
+
+fn key(id: &SceneId) -> Query {
+    Query::Key(id.as_str().into())
+}
+
+fn journal_key(id: &SceneId) -> String {
+    format!("pinpose journal {}", id.as_str())
+}
+
+/// The two failures that a user can do something about, and the others as the browser puts them.
+fn in_words(error: &idb::Error) -> String {
+    let name = match error {
+        idb::Error::DomException(exception) => Reflect::get(exception, &"name".into()).ok(),
+        _ => None,
+    };
+    match name.and_then(|name| name.as_string()).as_deref() {
+        Some("VersionError") => "a newer PinPose has stored here. Load this page again to use it".to_owned(),
+        Some("QuotaExceededError") => {
+            "the browser's storage is full. Delete scenes that are not needed any more".to_owned()
+        }
+        _ => error.to_string(),
+    }
 }

@@ -1,6 +1,7 @@
 //! The browser tab: the page's script, files, downloads, the address.
 
 mod background;
+mod browser_storage;
 mod files;
 mod indexed_db;
 
@@ -9,9 +10,10 @@ use std::rc::Rc;
 
 use wasm_bindgen::prelude::*;
 
-use super::{Slot, Storage, UpdateOffer};
+use super::{SceneId, Storage, UpdateOffer};
 
 pub use background::Background;
+pub use browser_storage::{read_stored_preference, write_stored_preference};
 pub use files::{download, fetch_example, pick_files};
 
 /// What the boot script offers; see `web/page/boot.js`.
@@ -128,8 +130,36 @@ pub fn reload() {
     page_apply_update();
 }
 
-pub fn default_storage(slot: Slot) -> Rc<dyn Storage> {
-    Rc::new(indexed_db::IndexedDb::new(slot))
+/// Where this browser keeps scenes.
+pub fn default_storage() -> Rc<dyn Storage> {
+    Rc::new(indexed_db::IndexedDb::default())
+}
+
+/// An id that no other scene has.
+pub fn new_scene_id() -> SceneId {
+    // 32 bits by chance, for two tabs within one millisecond.
+    let chance = (js_sys::Math::random() * 4_294_967_296.0) as u32;
+    SceneId::new(&format!("scene-{:x}-{chance:08x}", now_ms() as u64))
+}
+
+/// Calls `leave` when the page is hidden or goes: nothing that takes time may be done then.
+pub fn when_left(leave: impl Fn() + 'static) {
+    let (Some(window), Some(document)) =
+        (web_sys::window(), web_sys::window().and_then(|window| window.document()))
+    else {
+        return;
+    };
+    let left = Closure::<dyn Fn(web_sys::Event)>::new(move |event: web_sys::Event| {
+        let document = web_sys::window().and_then(|window| window.document());
+        if event.type_() == "pagehide" || document.is_some_and(|document| document.hidden()) {
+            leave();
+        }
+    });
+    let listener = left.as_ref().unchecked_ref();
+    window.add_event_listener_with_callback("pagehide", listener).ok();
+    document.add_event_listener_with_callback("visibilitychange", listener).ok();
+    // It listens as long as the page lives.
+    left.forget();
 }
 
 /// The words of an error from the browser.

@@ -1,0 +1,168 @@
+//! A store that lasts as long as the program: for tests, and where there is no other.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::storage::{
+    Journal, SaveOutcome, Saved, SavedAsset, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture,
+    StorageUse, distinct, sort_scenes,
+};
+
+#[derive(Debug, Default)]
+pub struct MemoryStorage {
+    kept: RefCell<Kept>,
+    journals: RefCell<BTreeMap<SceneId, Journal>>,
+    failure: RefCell<Option<String>>,
+}
+
+#[derive(Debug, Default)]
+struct Kept {
+    scenes: BTreeMap<SceneId, Record>,
+    /// By content.
+    assets: BTreeMap<String, SavedAsset>,
+    last_open: Option<SceneId>,
+}
+
+#[derive(Debug, Clone)]
+struct Record {
+    heading: SceneHeading,
+    json: String,
+    /// Keys and the names that the files have in this scene.
+    assets: Vec<(String, String)>,
+}
+
+impl MemoryStorage {
+    /// From now on saving fails for this reason, or works again.
+    pub fn fail_with(&self, reason: Option<&str>) {
+        *self.failure.borrow_mut() = reason.map(str::to_owned);
+    }
+
+    /// The content of how many files is stored.
+    pub fn asset_count(&self) -> usize {
+        self.kept.borrow().assets.len()
+    }
+}
+
+impl Kept {
+    fn bytes(&self, record: &Record) -> u64 {
+        let sizes = record.assets.iter().filter_map(|(key, _)| self.assets.get(key));
+        record.json.len() as u64 + sizes.map(|asset| asset.bytes.len() as u64).sum::<u64>()
+    }
+
+    fn list(&self) -> Vec<SceneSummary> {
+        let summary = |(id, record): (&SceneId, &Record)| SceneSummary {
+            id: id.clone(),
+            heading: record.heading.clone(),
+            bytes: self.bytes(record),
+        };
+        let mut scenes: Vec<SceneSummary> = self.scenes.iter().map(summary).collect();
+        sort_scenes(&mut scenes);
+        scenes
+    }
+
+    fn load(&self, id: &SceneId) -> Option<Saved> {
+        let record = self.scenes.get(id)?;
+        let asset = |(key, file_name): &(String, String)| {
+            Some(SavedAsset { file_name: file_name.clone(), ..self.assets.get(key)?.clone() })
+        };
+        Some(Saved {
+            heading: record.heading.clone(),
+            json: record.json.clone(),
+            assets: record.assets.iter().filter_map(asset).collect(),
+        })
+    }
+
+    fn save(&mut self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> SaveOutcome {
+        let stored_ms = self.scenes.get(id).map(|record| record.heading.changed_at_ms);
+        if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
+            return SaveOutcome::ChangedElsewhere;
+        }
+        let assets =
+            distinct(&saved.assets).map(|asset| (asset.key.clone(), asset.file_name.clone())).collect();
+        let record = Record { heading: saved.heading, json: saved.json, assets };
+        self.scenes.insert(id.clone(), record);
+        self.assets.extend(saved.assets.into_iter().map(|asset| (asset.key.clone(), asset)));
+        self.remove_unneeded();
+        SaveOutcome::Saved
+    }
+
+    fn remove_unneeded(&mut self) {
+        let keys = self.scenes.values().flat_map(|record| &record.assets);
+        let needed: BTreeSet<&String> = keys.map(|(key, _)| key).collect();
+        self.assets.retain(|key, _| needed.contains(key));
+    }
+}
+
+fn ready<T: 'static>(value: T) -> StorageFuture<T> {
+    Box::pin(async { Ok(value) })
+}
+
+impl Storage for MemoryStorage {
+    fn list(&self) -> StorageFuture<Vec<SceneSummary>> {
+        ready(self.kept.borrow().list())
+    }
+
+    fn load(&self, id: &SceneId) -> StorageFuture<Option<Saved>> {
+        ready(self.kept.borrow().load(id))
+    }
+
+    fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome> {
+        if let Some(reason) = self.failure.borrow().clone() {
+            return Box::pin(async { Err(reason) });
+        }
+        ready(self.kept.borrow_mut().save(id, saved, last_seen_ms))
+    }
+
+    fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()> {
+        if let Some(record) = self.kept.borrow_mut().scenes.get_mut(id) {
+            name.clone_into(&mut record.heading.name);
+        }
+        ready(())
+    }
+
+    fn duplicate(&self, id: &SceneId, copy: &SceneId, name: &str) -> StorageFuture<()> {
+        let mut kept = self.kept.borrow_mut();
+        if let Some(mut record) = kept.scenes.get(id).cloned() {
+            name.clone_into(&mut record.heading.name);
+            kept.scenes.insert(copy.clone(), record);
+        }
+        ready(())
+    }
+
+    fn delete(&self, id: &SceneId) -> StorageFuture<()> {
+        let mut kept = self.kept.borrow_mut();
+        kept.scenes.remove(id);
+        kept.remove_unneeded();
+        drop(kept);
+        self.remove_journal(id);
+        ready(())
+    }
+
+    fn last_open(&self) -> StorageFuture<Option<SceneId>> {
+        ready(self.kept.borrow().last_open.clone())
+    }
+
+    fn set_last_open(&self, id: &SceneId) -> StorageFuture<()> {
+        self.kept.borrow_mut().last_open = Some(id.clone());
+        ready(())
+    }
+
+    fn usage(&self) -> StorageFuture<StorageUse> {
+        let kept = self.kept.borrow();
+        let documents: u64 = kept.scenes.values().map(|record| record.json.len() as u64).sum();
+        let assets: u64 = kept.assets.values().map(|asset| asset.bytes.len() as u64).sum();
+        ready(StorageUse { used_bytes: documents + assets, quota_bytes: None })
+    }
+
+    fn write_journal(&self, id: &SceneId, journal: &Journal) {
+        self.journals.borrow_mut().insert(id.clone(), journal.clone());
+    }
+
+    fn read_journal(&self, id: &SceneId) -> Option<Journal> {
+        self.journals.borrow().get(id).cloned()
+    }
+
+    fn remove_journal(&self, id: &SceneId) {
+        self.journals.borrow_mut().remove(id);
+    }
+}
