@@ -12,6 +12,8 @@ pub enum Icon {
     Undo,
     Redo,
     Close,
+    Fold,
+    Unfold,
 }
 
 /// A button of one icon; `label` is its name for those who do not see it.
@@ -82,6 +84,8 @@ fn draw(painter: &Painter, icon: Icon, rect: Rect, stroke: Stroke) {
             line(&[(3.0, 3.0), (11.0, 11.0)]);
             line(&[(11.0, 3.0), (3.0, 11.0)]);
         }
+        Icon::Fold => line(&[(3.0, 5.0), (7.0, 9.5), (11.0, 5.0)]),
+        Icon::Unfold => line(&[(3.0, 9.0), (7.0, 4.5), (11.0, 9.0)]),
     }
 }
 
