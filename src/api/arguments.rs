@@ -35,7 +35,9 @@ pub fn set_pose(args: &Array) -> CallResult {
 pub fn command(args: &Array) -> CallResult {
     let name = args.get(0).as_string().ok_or_else(|| error("the command's name is not a text"))?;
     let value = args.get(1);
-    let value = value.as_f64().map(PageValue::Number).or_else(|| value.as_bool().map(PageValue::Boolean));
+    let number = value.as_f64().map(PageValue::Number);
+    let boolean = value.as_bool().map(PageValue::Boolean);
+    let value = number.or(boolean).or_else(|| value.as_string().map(PageValue::Text));
     Ok(PageCall::Command { name, value })
 }
 

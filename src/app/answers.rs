@@ -13,8 +13,8 @@ use crate::interact::pick_all;
 use crate::math::Pose;
 use crate::platform::{self, FileBytes, PageAnswer, PageCall, PageReply, PageState, PageValue, Perf, Picked};
 use crate::render::ExportKind;
-use crate::scene::{Look, ObjectId, PhotoId, PoseSource};
-use crate::session::{COMMANDS, Command, Question, Tool};
+use crate::scene::{Look, ObjectId, OverlayMode, PhotoId, PoseSource};
+use crate::session::{Arrangement, COMMANDS, Command, Panes, Question, Tool};
 use crate::ui::Saving;
 
 type Answer = Result<PageAnswer, String>;
@@ -82,7 +82,7 @@ impl PinPose {
             }
         };
         let files = files.into_iter().map(Ok).collect();
-        self.loading.arrive(Arrival { files, poses_as, reply: Some(reply) });
+        self.loading.arrive(Arrival { files, poses_as, as_masks: false, reply: Some(reply) });
     }
 
     fn call_set_pose(&mut self, photo: u32, object: u32, rows: &[[f64; 4]; 4]) -> Answer {
@@ -99,6 +99,16 @@ impl PinPose {
             ("select", None) => Command::Select(None),
             ("set_overlay_opacity", Some(PageValue::Number(opacity))) => {
                 Command::SetLook(Look { overlay_opacity: opacity as f32, ..self.session.look() })
+            }
+            ("set_overlay_mode", Some(PageValue::Text(mode))) => {
+                let mode = OverlayMode::from_name(&mode)
+                    .ok_or_else(|| not_one_of(&mode, &OverlayMode::ALL.map(|(_, name, _)| name)))?;
+                Command::SetLook(Look { mode, ..self.session.look() })
+            }
+            ("set_arrangement", Some(PageValue::Text(name))) => {
+                let arrangement = Arrangement::from_name(&name)
+                    .ok_or_else(|| not_one_of(&name, &Arrangement::ALL.map(|(_, name)| name)))?;
+                Command::SetPanes(Panes { arrangement, ..self.session.panes() })
             }
             _ => {
                 let info = COMMANDS.iter().find(|info| info.name == name);
@@ -156,7 +166,7 @@ impl PinPose {
             center: self.view.center.to_array(),
             viewport,
             panels: !self.ui_state.panels_hidden,
-            busy: self.loading.busy_text().is_some() || self.scenes.is_switching(),
+            busy: self.loading.is_busy() || self.scenes.is_switching(),
             saved: self.autosave.state(&self.session) == Saving::Saved,
             question,
             notices: self.ui_state.toasts.texts().map(str::to_owned).collect(),
@@ -238,4 +248,8 @@ impl PinPose {
 fn whole(number: f64) -> Result<u32, String> {
     let is_id = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
     if is_id { Ok(number as u32) } else { Err(format!("{number} is no id")) }
+}
+
+fn not_one_of(given: &str, names: &[&str]) -> String {
+    format!("the value is \"{given}\", one of {} expected", names.join(", "))
 }

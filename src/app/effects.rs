@@ -4,12 +4,11 @@ use super::PinPose;
 use crate::interact::object_rect;
 use crate::platform;
 use crate::session::{Effect, Notice};
-use crate::ui::Dialog;
 
 impl PinPose {
     pub(super) fn carry_out(&mut self, effect: Effect) {
         match effect {
-            Effect::PickFiles(_) => self.loading.pick_files(),
+            Effect::PickFiles(pick) => self.loading.pick_files(pick),
             Effect::LoadExample => self.loading.fetch_example(),
             Effect::Download { file_name, bytes } => {
                 if let Err(error) = platform::download(&file_name, &bytes) {
@@ -18,19 +17,20 @@ impl PinPose {
             }
             Effect::ExportPicture(request) => self.export(request),
             Effect::CopyText(text) => self.ctx.copy_text(text),
-            Effect::AskForPose => self.ui_state.open = Some(Dialog::PastePose),
             Effect::NewScene => self.new_scene(),
             Effect::ShowScenes => self.show_scenes(),
             Effect::SaveNow => self.save_now(),
             Effect::AskSaveAs => self.ask_save_as(),
-            Effect::ResetSceneView | Effect::ToggleTheme => {}
-            Effect::TogglePalette => self.ui_state.toggle(Dialog::Palette),
             Effect::RenameSelected => self.ui_state.rename_selected(&self.session),
             Effect::ZoomToObject => self.zoom_to_object(),
             Effect::FitPhoto => self.view.fit(),
-            Effect::TogglePanels => self.ui_state.panels_hidden = !self.ui_state.panels_hidden,
-            Effect::ToggleShortcuts => self.ui_state.toggle(Dialog::Shortcuts),
             Effect::Notify(notice) => self.notify(notice),
+            effect => {
+                let ctx = self.ctx.clone();
+                if let Some(left) = self.ui_state.take_effect(effect, &ctx) {
+                    log::debug!("{left:?} is not carried out");
+                }
+            }
         }
     }
 

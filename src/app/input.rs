@@ -5,8 +5,8 @@ use glam::DVec2;
 
 use super::PinPose;
 use crate::interact::{Button, Hit, Modifiers, PointerAction, PointerEvent, pick_all};
-use crate::session::Command;
-use crate::ui::{ViewportPlace, pressed_commands};
+use crate::session::{Command, CommandId};
+use crate::ui::{Binding, DragModifier, ModifierMap, ViewportPlace, pressed_commands};
 
 /// Points of scrolling that browsers report for one notch of a wheel.
 const POINTS_PER_NOTCH: f32 = 100.0;
@@ -23,8 +23,40 @@ impl PinPose {
         if dialog_is_open || ctx.text_edit_focused() || egui::Popup::is_any_open(ctx) {
             return;
         }
-        for id in ctx.input_mut(pressed_commands) {
-            self.apply(Command::Run(id));
+        self.take_paste(ctx);
+        let keymap = &self.ui_state.preferences.keymap;
+        for pressed in ctx.input_mut(|input| pressed_commands(input, keymap)) {
+            match pressed.id.nudge() {
+                Some(nudge) => self.apply(Command::Nudge(nudge, pressed.factor)),
+                None => self.apply(Command::Run(pressed.id)),
+            }
+        }
+    }
+
+    /// Ctrl+V brings the clipboard's text by itself, and the browser says the key too.
+    fn take_paste(&mut self, ctx: &egui::Context) {
+        let keymap = &self.ui_state.preferences.keymap;
+        if keymap.binding(CommandId::PastePose) != Binding::from_saved_text("Ctrl+V") {
+            return;
+        }
+        let mut pasted = None;
+        ctx.input_mut(|input| {
+            input.events.retain(|event| match event {
+                Event::Paste(text) => {
+                    pasted = Some(text.clone());
+                    false
+                }
+                Event::Key { key: egui::Key::V, modifiers, .. } => {
+                    !(modifiers.command && !modifiers.shift && !modifiers.alt)
+                }
+                _ => true,
+            });
+        });
+        if let Some(text) = pasted {
+            match self.session.unavailable(CommandId::PastePose) {
+                Some(_) => self.apply(Command::Run(CommandId::PastePose)),
+                None => self.apply(Command::SetPoseFromText(text)),
+            }
         }
     }
 
@@ -33,7 +65,8 @@ impl PinPose {
         self.pointer = None;
         let Some(place) = self.ui_state.viewport else { return };
         self.place_view();
-        for event in pointer_events(ctx, &place) {
+        let modifiers = self.ui_state.preferences.modifiers;
+        for event in pointer_events(ctx, &place, modifiers) {
             let commands = self.gestures.handle(&event, &self.session, &mut self.view);
             commands.into_iter().for_each(|command| self.apply(command));
         }
@@ -58,7 +91,7 @@ impl PinPose {
 }
 
 /// What the pointer did in this frame, in order.
-fn pointer_events(ctx: &egui::Context, place: &ViewportPlace) -> Vec<PointerEvent> {
+fn pointer_events(ctx: &egui::Context, place: &ViewportPlace, map: ModifierMap) -> Vec<PointerEvent> {
     let (events, latest, frame_modifiers, double_clicked) = ctx.input(|input| {
         let double_clicked = input.pointer.button_double_clicked(PointerButton::Primary);
         (input.events.clone(), input.pointer.latest_pos(), input.modifiers, double_clicked)
@@ -86,11 +119,11 @@ fn pointer_events(ctx: &egui::Context, place: &ViewportPlace) -> Vec<PointerEven
         let (Some(position), Some(action)) = (position, action) else { continue };
         let needs_hover = matches!(action, PointerAction::Wheel(_) | PointerAction::Pinch(_));
         if !needs_hover || is_over(ctx, place, position) {
-            read.push(pointer_event(place, position, action, modifiers));
+            read.push(pointer_event(place, position, action, meant(modifiers, map)));
         }
     }
     if let Some(position) = pointer.filter(|position| double_clicked && is_over(ctx, place, *position)) {
-        read.push(pointer_event(place, position, PointerAction::DoubleClick, frame_modifiers));
+        read.push(pointer_event(place, position, PointerAction::DoubleClick, meant(frame_modifiers, map)));
     }
     read
 }
@@ -99,10 +132,19 @@ fn pointer_event(
     place: &ViewportPlace,
     position: egui::Pos2,
     action: PointerAction,
-    modifiers: egui::Modifiers,
+    modifiers: Modifiers,
 ) -> PointerEvent {
-    let modifiers = Modifiers { shift: modifiers.shift, ctrl: modifiers.command, alt: modifiers.alt };
     PointerEvent { position: to_viewport(place, position), action, modifiers }
+}
+
+/// Gestures know Shift as depth, Ctrl as roll and Alt as fine; the user may hold other keys for these.
+fn meant(held: egui::Modifiers, map: ModifierMap) -> Modifiers {
+    let is_held = |what| map.get(what).is_held(held);
+    Modifiers {
+        shift: is_held(DragModifier::Depth),
+        ctrl: is_held(DragModifier::Roll),
+        alt: is_held(DragModifier::Fine),
+    }
 }
 
 fn to_viewport(place: &ViewportPlace, position: egui::Pos2) -> DVec2 {

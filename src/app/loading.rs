@@ -1,12 +1,13 @@
 //! Files on their way in: read, recognised, parsed on another thread, and given to the session together.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
 use super::PinPose;
-use super::jobs::{Done, JobKind, Jobs};
+use super::jobs::{Done, JobKind, Jobs, Urgency};
+use super::thumbnails::ThumbnailJobs;
 use crate::formats::{
     Document, FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
     with_companions,
@@ -14,7 +15,11 @@ use crate::formats::{
 use crate::photo::Pixels;
 use crate::platform::{self, FileBytes, Loaded, PageAnswer, PageReply, Saved, SavedAsset};
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
-use crate::session::{Batch, Command, Notice, Opening};
+use crate::session::{Batch, Command, Notice, Opening, Pick};
+use crate::ui::Busy;
+
+/// What takes less is over before it could be read.
+const QUIET_MS: f64 = 300.0;
 
 /// Everything that is being loaded.
 pub struct Loading {
@@ -27,20 +32,39 @@ pub struct Loading {
     /// Files that a picker or a drop is reading.
     arrived: Rc<RefCell<Vec<Arrival>>>,
     reading: Rc<RefCell<u32>>,
+    /// Grows with every cancel: what was begun before is thrown away when it comes.
+    cancels: Rc<Cell<u64>>,
+    /// When the present work began.
+    busy_since_ms: Option<f64>,
+    pub thumbnails: ThumbnailJobs,
+    /// `None`: it could not be made.
+    finished_thumbnails: Vec<(Sha256, Option<Pixels>)>,
 }
 
 /// Files that came together.
 pub struct Arrival {
     pub files: Vec<Result<FileBytes, String>>,
     pub poses_as: Option<PosesAs>,
+    /// All images are masks of the photo that is shown.
+    pub as_masks: bool,
     pub reply: Option<PageReply>,
+}
+
+impl Arrival {
+    fn of_files(files: Vec<Result<FileBytes, String>>) -> Self {
+        Self { files, poses_as: None, as_masks: false, reply: None }
+    }
 }
 
 /// One drop on its way.
 struct Load {
     id: u64,
     jobs_left: usize,
+    job_count: usize,
     batch: Batch,
+    as_masks: bool,
+    /// Images that are masks if a photo of their size is shown.
+    likely_masks: Vec<Arc<PhotoAsset>>,
     opening: Option<(Document, Origin)>,
     problems: Vec<String>,
     warnings: Vec<String>,
@@ -66,32 +90,89 @@ impl Loading {
             next_load: 0,
             arrived: Rc::default(),
             reading: Rc::default(),
+            cancels: Rc::default(),
+            busy_since_ms: None,
+            thumbnails: ThumbnailJobs::default(),
+            finished_thumbnails: Vec::new(),
         }
     }
 
-    /// What the user waits for, if anything.
-    pub fn busy_text(&self) -> Option<String> {
-        let waiting: usize = self.loads.iter().map(|load| load.jobs_left).sum();
-        match waiting {
-            0 if *self.reading.borrow() == 0 => None,
-            0 => Some("Reading files…".to_owned()),
-            1 => Some("Reading 1 file…".to_owned()),
-            _ => Some(format!("Reading {waiting} files…")),
+    /// Is anything on its way in?
+    pub fn is_busy(&self) -> bool {
+        *self.reading.borrow() > 0 || self.loads.iter().any(|load| load.jobs_left > 0)
+    }
+
+    /// What the user waits for, once it takes long enough to be worth saying.
+    pub fn busy(&mut self, now_ms: f64) -> Option<Busy> {
+        if !self.is_busy() {
+            self.busy_since_ms = None;
+            return None;
+        }
+        let since_ms = *self.busy_since_ms.get_or_insert(now_ms);
+        let left_ms = QUIET_MS - (now_ms - since_ms);
+        if left_ms > 0.0 {
+            self.ctx.request_repaint_after(std::time::Duration::from_secs_f64(left_ms / 1000.0));
+            return None;
+        }
+        let all: usize = self.loads.iter().map(|load| load.job_count).sum();
+        let left: usize = self.loads.iter().map(|load| load.jobs_left).sum();
+        let text = match (left, all) {
+            (0, _) => "Reading files…".to_owned(),
+            (_, 1) => "Reading 1 file…".to_owned(),
+            _ => format!("Reading {} of {all} files…", all - left + 1),
+        };
+        // Half a saved scene is none.
+        let can_cancel = !self.loads.iter().any(|load| load.is_of(Origin::Storage));
+        Some(Busy { text, can_cancel })
+    }
+
+    /// Leaves out what is not read yet.
+    pub fn cancel(&mut self) {
+        self.cancels.set(self.cancels.get() + 1);
+        *self.reading.borrow_mut() = 0;
+        self.arrived.borrow_mut().clear();
+        let loads = std::mem::take(&mut self.loads);
+        let (kept, dropped): (Vec<_>, Vec<_>) =
+            loads.into_iter().partition(|load| load.is_of(Origin::Storage));
+        self.loads = kept;
+        for load in dropped {
+            let jobs: Vec<u64> =
+                self.load_of_job.iter().filter(|(_, of)| **of == load.id).map(|(job, _)| *job).collect();
+            self.jobs.cancel(|job| jobs.contains(&job));
+            jobs.iter().for_each(|job| {
+                self.load_of_job.remove(job);
+            });
+            if let Some(reply) = load.reply {
+                // Who asked may be gone.
+                reply.send(Err("the user cancelled the loading".to_owned())).ok();
+            }
         }
     }
 
-    pub fn pick_files(&self) {
+    pub fn pick_files(&self, pick: Pick) {
         let deliver = self.deliverer();
-        platform::pick_files(move |files| deliver(Arrival { files, poses_as: None, reply: None }));
+        let as_masks = pick == Pick::Masks;
+        platform::pick_files(accepted(pick), move |files| {
+            deliver(Arrival { as_masks, ..Arrival::of_files(files) });
+        });
     }
 
     pub fn fetch_example(&self) {
+        let arrive = self.begin_reading();
+        platform::fetch_example(move |file| arrive(Arrival::of_files(vec![file])));
+    }
+
+    /// Counts as busy until what is returned is called; a cancel meanwhile makes that do nothing.
+    fn begin_reading(&self) -> impl FnOnce(Arrival) + 'static {
         *self.reading.borrow_mut() += 1;
-        let (deliver, reading) = (self.deliverer(), self.reading.clone());
-        platform::fetch_example(move |file| {
-            *reading.borrow_mut() -= 1;
-            deliver(Arrival { files: vec![file], poses_as: None, reply: None });
-        });
+        let (deliver, reading, cancels) = (self.deliverer(), self.reading.clone(), self.cancels.clone());
+        let begun = cancels.get();
+        move |arrival| {
+            if cancels.get() == begun {
+                *reading.borrow_mut() -= 1;
+                deliver(arrival);
+            }
+        }
     }
 
     pub fn arrive(&self, arrival: Arrival) {
@@ -108,13 +189,31 @@ impl Loading {
 
     /// Decodes a photo of the scene that is to be shown.
     pub fn decode(&mut self, photo: &PhotoAsset) {
-        let file = NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() };
-        self.jobs.submit(JobKind::Photo, file, &[]);
+        self.jobs.submit(JobKind::Photo, file_of(photo), &[], Urgency::Next);
+    }
+
+    /// Decodes a photo that may be shown soon.
+    pub fn decode_ahead(&mut self, photo: &PhotoAsset) {
+        self.jobs.submit(JobKind::Photo, file_of(photo), &[], Urgency::InTurn);
+    }
+
+    pub fn make_thumbnail(&mut self, photo: &PhotoAsset) {
+        let job = self.jobs.submit(JobKind::Thumbnail, file_of(photo), &[], Urgency::InTurn);
+        self.thumbnails.insert(job, photo.sha256);
+    }
+
+    pub fn is_worker_idle(&self) -> bool {
+        self.jobs.is_idle()
+    }
+
+    pub fn take_thumbnails(&mut self) -> Vec<(Sha256, Option<Pixels>)> {
+        std::mem::take(&mut self.finished_thumbnails)
     }
 
     fn start(&mut self, arrival: Arrival) {
         let batch = Batch { poses_as: arrival.poses_as, ..Batch::default() };
         let mut load = self.new_load(batch, arrival.reply);
+        load.as_masks = arrival.as_masks;
         let mut files = Vec::new();
         for file in arrival.files {
             match file {
@@ -149,7 +248,10 @@ impl Loading {
         Load {
             id: self.next_load,
             jobs_left: 0,
+            job_count: 0,
             batch,
+            as_masks: false,
+            likely_masks: Vec::new(),
             opening: None,
             problems: Vec::new(),
             warnings: Vec::new(),
@@ -178,9 +280,10 @@ impl Loading {
             _ => None,
         };
         if let Some(job) = job {
-            let id = self.jobs.submit(job, file, companions);
+            let id = self.jobs.submit(job, file, companions, Urgency::InTurn);
             self.load_of_job.insert(id, load.id);
             load.jobs_left += 1;
+            load.job_count += 1;
             return;
         }
         match parse_text_or_archive(&file, kind) {
@@ -212,6 +315,11 @@ impl Loading {
         }
         let mut decoded = Vec::new();
         for (job, file, done) in self.jobs.poll() {
+            if let Some(sha256) = self.thumbnails.remove(&job) {
+                let made = if let Ok(Done::Thumbnail(pixels)) = done { Some(pixels) } else { None };
+                self.finished_thumbnails.push((sha256, made));
+                continue;
+            }
             if let Ok(Done::Photo(asset, pixels)) = &done {
                 decoded.push((asset.sha256, pixels.clone()));
             }
@@ -228,6 +336,26 @@ impl Loading {
     }
 }
 
+/// The names of files that a picker shows at first; nothing for all.
+fn accepted(pick: Pick) -> &'static [&'static str] {
+    match pick {
+        Pick::Anything => &[],
+        Pick::Photos | Pick::Masks => &["png", "jpg", "jpeg"],
+        Pick::Meshes => &["ply", "obj", "stl", "glb", "gltf", "off"],
+        Pick::Cameras => &["json", "txt"],
+        Pick::Poses => &["json", "txt", "csv"],
+        Pick::Workspace => &["zip"],
+    }
+}
+
+fn file_of(photo: &PhotoAsset) -> NamedFile {
+    NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() }
+}
+
+fn is_grey(pixels: &Pixels) -> bool {
+    pixels.rgba.chunks_exact(4).all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2])
+}
+
 impl Load {
     fn is_of(&self, origin: Origin) -> bool {
         self.opening.as_ref().is_some_and(|(_, candidate)| *candidate == origin)
@@ -235,7 +363,16 @@ impl Load {
 
     fn take_done(&mut self, file: &NamedFile, done: Result<Done, String>) {
         match done {
-            Ok(Done::Photo(asset, _)) => self.batch.photos.push(asset),
+            Ok(Done::Photo(asset, pixels)) => {
+                let is_named_mask = asset.file_name.to_lowercase().contains("mask");
+                if self.as_masks || (is_named_mask && self.opening.is_none() && is_grey(&pixels)) {
+                    self.likely_masks.push(asset);
+                } else {
+                    self.batch.photos.push(asset);
+                }
+            }
+            // Thumbnails are of no load.
+            Ok(Done::Thumbnail(_)) => return,
             Ok(Done::Mesh(asset, warnings)) => {
                 self.warnings.extend(warnings.into_iter().map(|warning| format!("{}: {warning}", file.name)));
                 self.batch.meshes.push(asset);
@@ -262,8 +399,7 @@ impl PinPose {
         if dropped.is_empty() {
             return;
         }
-        let (deliver, reading) = (self.loading.deliverer(), self.loading.reading.clone());
-        *reading.borrow_mut() += 1;
+        let arrive = self.loading.begin_reading();
         platform::spawn(async move {
             let mut files = Vec::new();
             for file in dropped {
@@ -277,8 +413,7 @@ impl PinPose {
                     Err(error) => Err(format!("{name}: {error}")),
                 });
             }
-            *reading.borrow_mut() -= 1;
-            deliver(Arrival { files, poses_as: None, reply: None });
+            arrive(Arrival::of_files(files));
         });
     }
 
@@ -288,12 +423,16 @@ impl PinPose {
         for (sha256, pixels) in decoded {
             self.photos.insert(sha256, pixels);
         }
+        for (sha256, pixels) in self.loading.take_thumbnails() {
+            self.ui_state.thumbnails.insert(&self.ctx, sha256, pixels.as_ref());
+        }
         for mut load in complete {
             if load.is_of(Origin::Workspace) && !self.make_room(&mut load) {
                 self.loading.loads.push(load);
                 continue;
             }
             load.sort();
+            let masks = self.take_masks(&mut load);
             let restored = load.is_of(Origin::Storage);
             let command = match load.opening.take() {
                 Some((document, _)) => Command::Open(Box::new(Opening {
@@ -304,7 +443,12 @@ impl PinPose {
                 })),
                 None => Command::Import(Box::new(load.batch)),
             };
-            self.apply(command);
+            if !matches!(&command, Command::Import(batch) if is_nothing(batch)) {
+                self.apply(command);
+            }
+            if !masks.is_empty() {
+                self.apply(Command::ImportMasks(masks));
+            }
             if restored {
                 // What could not be read stays in storage: a change goes into a scene of its own.
                 self.scene_opened(load.problems.is_empty());
@@ -336,13 +480,51 @@ impl PinPose {
         true
     }
 
-    /// Makes sure that the shown photo's pixels are there or on their way.
+    /// The images of a load that are masks: all if they were picked as such, else those of the size of the photo that is
+    /// going to be shown. The others are photos.
+    fn take_masks(&self, load: &mut Load) -> Vec<Arc<PhotoAsset>> {
+        let likely = std::mem::take(&mut load.likely_masks);
+        if load.as_masks {
+            return likely;
+        }
+        let first_new = load.batch.photos.first().map(|photo| (photo.width, photo.height));
+        let shown = self.session.photo().map(|photo| (photo.asset.width, photo.asset.height));
+        let size = first_new.or(shown);
+        let (masks, photos) = likely.into_iter().partition(|image| size == Some((image.width, image.height)));
+        load.batch.photos.extend::<Vec<_>>(photos);
+        masks
+    }
+
+    /// Makes sure that the shown photo's pixels are there or on their way, and then the next one's.
     pub(super) fn want_pixels(&mut self) {
         let Some(photo) = self.session.photo() else { return };
         let sha256 = photo.asset.sha256;
-        if self.photos.get(sha256).is_none() && self.photos.wanted != Some(sha256) {
-            self.photos.wanted = Some(sha256);
-            self.loading.decode(&photo.asset);
+        self.photos.show(sha256);
+        if self.photos.get(sha256).is_none() {
+            if self.photos.wanted != Some(sha256) {
+                self.photos.wanted = Some(sha256);
+                self.loading.decode(&photo.asset);
+            }
+        } else if !self.loading.is_busy() && self.loading.is_worker_idle() {
+            self.decode_next_photo();
         }
     }
+
+    fn decode_next_photo(&mut self) {
+        let photos = &self.session.scene().photos;
+        let shown = self.session.photo().map(|photo| photo.id);
+        let position = photos.iter().position(|photo| Some(photo.id) == shown);
+        let Some(next) = position.and_then(|position| photos.get(position + 1)) else { return };
+        let sha256 = next.asset.sha256;
+        if self.photos.get(sha256).is_none() && self.photos.prefetched != Some(sha256) {
+            self.photos.prefetched = Some(sha256);
+            self.loading.decode_ahead(&next.asset);
+        }
+    }
+}
+
+/// A drop of masks alone brings nothing else.
+fn is_nothing(batch: &Batch) -> bool {
+    let Batch { photos, meshes, cameras, poses, .. } = batch;
+    photos.is_empty() && meshes.is_empty() && cameras.is_empty() && poses.is_empty()
 }

@@ -15,6 +15,7 @@ mod performance;
 mod photo_cache;
 mod pictures;
 mod scenes;
+mod thumbnails;
 mod widgets;
 
 use std::rc::Rc;
@@ -79,7 +80,7 @@ impl PinPose {
             session: Session::default(),
             view: PhotoView::default(),
             gestures: PhotoGestures::default(),
-            ui_state: UiState::default(),
+            ui_state: UiState::new(ui::Preferences::load()),
             loading: loading::Loading::new(ctx),
             photos: photo_cache::PhotoCache::default(),
             autosave: autosave::Autosave::new(start.storage.clone(), ctx.clone(), first_id),
@@ -132,6 +133,7 @@ impl eframe::App for PinPose {
         self.take_gestures(ctx);
         self.want_pixels();
         self.update_mask_layer();
+        self.want_thumbnails();
         self.make_pictures(ctx);
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
@@ -141,16 +143,15 @@ impl eframe::App for PinPose {
         let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
         let cursor_pixel = self.pointer.map(|position| self.view.image_from_viewport(position));
         let open_scene = self.autosave.id();
+        let opening = || ui::Busy { text: "Opening…".to_owned(), can_cancel: false };
+        let busy = self.loading.busy(platform::now_ms()).or_else(|| self.scenes.is_opening().then(opening));
         let around = ui::Surroundings {
             view: &self.view,
             renderer: self.renderer.as_ref(),
             pixels,
             masks: self.mask_layer.pixels(),
             saving: self.autosave.state(&self.session),
-            busy: self
-                .loading
-                .busy_text()
-                .or_else(|| self.scenes.is_opening().then(|| "Opening…".to_owned())),
+            busy,
             scenes: self.scenes.list(),
             store: ui::StoreView {
                 open_scene: Some(&open_scene),
@@ -167,7 +168,15 @@ impl eframe::App for PinPose {
         if self.performance.start_ms == 0.0 {
             self.performance.start_ms = platform::navigation_ms();
         }
+        let preferences = self.ui_state.preferences.clone();
         let asked = ui::draw(ui, &self.session, &around, &mut self.ui_state);
+        if self.ui_state.preferences != preferences {
+            self.ui_state.preferences.store();
+        }
+        if asked.cancel_loading {
+            self.loading.cancel();
+            self.notify(Notice::info("Cancelled: what was not read yet is left out"));
+        }
         self.place_view();
         if asked.apply_update {
             platform::reload();

@@ -1,18 +1,23 @@
-//! Decoded photos: the one that is shown and a few around it; the rest stay encoded.
+//! Decoded photos: the one that is shown and as many others as fit; the rest stay encoded.
 
 use std::sync::Arc;
 
 use crate::photo::Pixels;
 use crate::scene::Sha256;
 
-/// Photos that are kept decoded, newest first; a 12-megapixel one takes 48 MB.
-const KEPT: usize = 4;
+/// All decoded photos together, but for the one that is shown, which is kept however large it is.
+const MOST_BYTES: usize = 256 << 20;
 
 #[derive(Debug, Default)]
 pub struct PhotoCache {
+    /// What was used last comes first.
     kept: Vec<(Sha256, Arc<Pixels>)>,
-    /// Being decoded.
+    /// The photo that is shown.
+    shown: Option<Sha256>,
+    /// Being decoded, to be shown.
     pub wanted: Option<Sha256>,
+    /// Was decoded ahead, or is being: it is not tried twice, though it may not have fitted.
+    pub prefetched: Option<Sha256>,
 }
 
 impl PhotoCache {
@@ -20,12 +25,59 @@ impl PhotoCache {
         self.kept.iter().find(|(kept, _)| *kept == sha256).map(|(_, pixels)| pixels.clone())
     }
 
+    /// This one stays, whatever else comes.
+    pub fn show(&mut self, sha256: Sha256) {
+        if self.shown != Some(sha256) {
+            self.shown = Some(sha256);
+            let position = self.kept.iter().position(|(kept, _)| *kept == sha256);
+            if let Some(position) = position {
+                let used = self.kept.remove(position);
+                self.kept.insert(0, used);
+            }
+        }
+    }
+
     pub fn insert(&mut self, sha256: Sha256, pixels: Arc<Pixels>) {
         self.kept.retain(|(kept, _)| *kept != sha256);
         self.kept.insert(0, (sha256, pixels));
-        self.kept.truncate(KEPT);
         if self.wanted == Some(sha256) {
             self.wanted = None;
         }
+        self.drop_surplus();
+    }
+
+    fn drop_surplus(&mut self) {
+        let mut bytes: usize = self.kept.iter().map(|(_, pixels)| pixels.rgba.len()).sum();
+        while bytes > MOST_BYTES {
+            let is_free = |(kept, _): &(Sha256, Arc<Pixels>)| Some(*kept) != self.shown;
+            let Some(oldest) = self.kept.iter().rposition(is_free) else { break };
+            bytes -= self.kept.remove(oldest).1.rgba.len();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn photo(number: u8, megabytes: usize) -> (Sha256, Arc<Pixels>) {
+        let rgba = vec![0; megabytes << 20];
+        (Sha256::of(&[number]), Arc::new(Pixels { width: 1, height: 1, rgba }))
+    }
+
+    #[test]
+    fn photos_fit_a_budget_and_the_shown_one_stays() {
+        let mut cache = PhotoCache::default();
+        let photos: Vec<_> = (0..5).map(|number| photo(number, 100)).collect();
+        cache.show(photos[0].0);
+        for (sha256, pixels) in &photos {
+            cache.insert(*sha256, pixels.clone());
+        }
+        let there: Vec<bool> = photos.iter().map(|(sha256, _)| cache.get(*sha256).is_some()).collect();
+        assert_eq!(there, [true, false, false, false, true]);
+        let (large, pixels) = photo(9, 300);
+        cache.show(large);
+        cache.insert(large, pixels);
+        assert!(cache.get(large).is_some(), "however large");
     }
 }

@@ -3,10 +3,12 @@
 mod decode;
 mod encode;
 mod mip;
+mod thumbnail;
 
 pub use decode::{MAX_PIXELS, PhotoError, decode};
 pub use encode::{png_gray8, png_gray16, png_rgba};
 pub use mip::half_size;
+pub use thumbnail::thumbnail;
 
 /// A decoded photo: RGBA rows from the top, 8 bits a channel, sRGB, upright (EXIF orientation applied).
 #[derive(Debug, Clone, PartialEq)]

@@ -51,10 +51,11 @@ pub enum PageCall {
 }
 
 /// The argument of a command.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum PageValue {
     Number(f64),
     Boolean(bool),
+    Text(String),
 }
 
 #[derive(Debug, Clone, PartialEq)]

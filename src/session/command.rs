@@ -22,6 +22,7 @@ pub enum Command {
     /// A saved scene in place of this one.
     Open(Box<Opening>),
     Answer(Answer),
+    /// What the scene is called; no undo step.
     RenameScene(String),
 
     ShowPhoto(PhotoId),

@@ -154,6 +154,11 @@ impl Session {
         effects
     }
 
+    /// How many of a file's poses find their photos and meshes in the scene.
+    pub fn count_fitting_poses(&self, incoming: &Incoming) -> usize {
+        incoming.apply(&mut self.scene.clone(), PosesAs::Reference, 0.0).applied
+    }
+
     fn wait_for(&mut self, outcome: Outcome, poses_as: PosesAs) {
         if let Some(incoming) = outcome.rest {
             self.waiting.retain(|waiting| waiting.incoming != incoming);

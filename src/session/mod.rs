@@ -79,11 +79,6 @@ impl Session {
         &self.scene
     }
 
-    /// The scene without the gesture that is under way: what is worth saving.
-    pub fn settled_scene(&self) -> &Scene {
-        self.gesture.as_ref().map_or(&self.scene, |gesture| &gesture.before.scene)
-    }
-
     /// The photo that is shown.
     pub fn photo(&self) -> Option<&Photo> {
         self.scene.photo(self.photo?)
@@ -154,6 +149,11 @@ impl Session {
     /// Grows with every change that a saved scene would show.
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+
+    /// The scene as it was before the gesture under way: what is worth keeping if that gesture is never ended.
+    pub fn settled_scene(&self) -> &Scene {
+        self.gesture.as_ref().map_or(&self.scene, |gesture| &gesture.before.scene)
     }
 
     /// The revision of [`Self::settled_scene`].

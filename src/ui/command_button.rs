@@ -1,15 +1,15 @@
 //! Buttons of the command table: the same tooltip, shortcut and reason wherever a command is offered.
 
-use egui::{Button, Response, Ui};
+use egui::{Button, Context, Response, Ui};
 
+use super::Keymap;
 use super::icons::{Icon, icon_button};
-use super::shortcut_text;
 use crate::session::{Command, CommandId, CommandInfo, Session};
 
 /// A button of the command table: disabled, with the reason, where the command cannot be used.
 pub fn command_button(ui: &mut Ui, button: Button<'_>, info: &CommandInfo, session: &Session) -> bool {
     let reason = session.unavailable(info.id);
-    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(tooltip(info));
+    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(tooltip(ui.ctx(), info));
     let response = match reason {
         Some(reason) => response.on_disabled_hover_text(format!("{}: {reason}", info.tooltip)),
         None => response,
@@ -27,8 +27,8 @@ pub fn command_item(
 ) {
     let info = id.info();
     let mut button = Button::new(text.unwrap_or(info.text));
-    if let Some(shortcut) = info.shortcut {
-        button = button.shortcut_text(shortcut_text(shortcut));
+    if let Some(shortcut) = Keymap::of(ui.ctx()).text(id) {
+        button = button.shortcut_text(shortcut);
     }
     if command_button(ui, button, info, session) {
         commands.push(Command::Run(id));
@@ -40,14 +40,14 @@ pub fn command_item(
 pub fn command_icon(ui: &mut Ui, icon: Icon, id: CommandId, session: &Session) -> Response {
     let info = id.info();
     match session.unavailable(id) {
-        None => icon_button(ui, icon, info.text, &tooltip(info), true),
+        None => icon_button(ui, icon, info.text, &tooltip(ui.ctx(), info), true),
         Some(reason) => icon_button(ui, icon, info.text, &format!("{}: {reason}", info.tooltip), false),
     }
 }
 
-pub fn tooltip(info: &CommandInfo) -> String {
-    match info.shortcut {
-        Some(shortcut) => format!("{} ({})", info.tooltip, shortcut_text(shortcut)),
+pub fn tooltip(ctx: &Context, info: &CommandInfo) -> String {
+    match Keymap::of(ctx).text(info.id) {
+        Some(shortcut) => format!("{} ({shortcut})", info.tooltip),
         None => info.tooltip.to_owned(),
     }
 }

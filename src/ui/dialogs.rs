@@ -1,73 +1,100 @@
-//! Questions that an import raises, and the sheet of gestures and keys.
+//! What comes up over the rest: questions that an import raises, the sheet of keys, the field to paste a pose.
 
-use egui::{Grid, Id, Modal, RichText, Ui};
+use egui::{Button, Id, Key, Modal, Modifiers, RichText, Ui, Vec2};
 
-use super::{Dialog, UiState, shortcut_text, theme};
-use crate::formats::PosesAs;
-use crate::session::{Answer, COMMANDS, Command, Question, Session};
+use super::{Dialog, UiState, palette, paste_dialog, shortcuts_sheet, theme};
+use crate::formats::{Incoming, PosesAs};
+use crate::session::{Answer, Command, Question, Session};
 
-const GESTURES: [(&str, &str); 10] = [
-    ("Click", "select an object (Alt: the one behind)"),
-    ("Drag an object", "move it; the point you grab stays under the cursor"),
-    ("Right drag an object", "turn it about its centre"),
-    ("Ctrl + right drag", "roll it about the line of sight"),
-    ("Shift + wheel", "nearer or farther, 1 px of its width a notch"),
-    ("Alt while dragging", "ten times finer"),
-    ("Wheel", "zoom to the cursor"),
-    ("Drag the ground, middle drag", "move the photo"),
-    ("Double click", "zoom to the object, or show the whole photo"),
-    ("Esc", "put back the drag under way"),
-];
+/// All buttons of dialogs.
+pub const BUTTON_SIZE: Vec2 = Vec2::new(108.0, 30.0);
 
-pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, commands: &mut Vec<Command>) {
-    if let Some(question) = session.question() {
-        let modal = Modal::new(Id::unique("question")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| {
-            ui.set_width(400.0);
-            match question {
-                Question::PosesAs(incoming) => {
-                    poses_question(ui, &incoming.file_name, incoming.pose_count(), commands);
-                }
-                Question::CameraSize { file, photos } => {
-                    let size = file.size.unwrap_or_default();
-                    let photo = photos.first().and_then(|id| session.scene().photo(*id));
-                    let photo_size =
-                        photo.map(|photo| (photo.asset.width, photo.asset.height)).unwrap_or_default();
-                    camera_question(ui, &file.file_name, size, photo_size, commands);
-                }
+/// How many of a question's poses fit, and the state of the scene that this was counted for.
+#[derive(Debug, Default)]
+pub struct FitCount {
+    counted: Option<(String, u64, usize)>,
+}
+
+impl FitCount {
+    fn of(&mut self, session: &Session, incoming: &Incoming) -> usize {
+        let revision = session.revision();
+        match &self.counted {
+            Some((file, at, count)) if *file == incoming.file_name && *at == revision => *count,
+            _ => {
+                let count = session.count_fitting_poses(incoming);
+                self.counted = Some((incoming.file_name.clone(), revision, count));
+                count
             }
-        });
-        if modal.should_close() && commands.is_empty() {
-            commands.push(Command::Answer(Answer::Refuse));
-        }
-        return;
-    }
-    if state.open == Some(Dialog::Shortcuts) {
-        let modal = Modal::new(Id::unique("shortcuts"))
-            .frame(theme::dialog_frame(ctx))
-            .show(ctx, |ui| shortcuts(ui, &mut state.open));
-        if modal.should_close() {
-            state.open = None;
         }
     }
 }
 
-fn poses_question(ui: &mut Ui, file_name: &str, count: usize, commands: &mut Vec<Command>) {
+pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, commands: &mut Vec<Command>) {
+    if let Some(question) = session.question() {
+        ask(ctx, session, question, &mut state.fit_count, commands);
+        return;
+    }
+    let is_closed = match state.open {
+        None => false,
+        Some(Dialog::Palette) => {
+            let keymap = &state.preferences.keymap;
+            palette::draw(ctx, session, keymap, &mut state.palette, commands)
+        }
+        Some(Dialog::Shortcuts) => {
+            shortcuts_sheet::draw(ctx, &mut state.preferences, &mut state.shortcuts_sheet)
+        }
+        Some(Dialog::PastePose) => paste_dialog::draw(ctx, session, &mut state.paste_dialog, commands),
+    };
+    if is_closed {
+        state.open = None;
+    }
+}
+
+fn ask(
+    ctx: &egui::Context,
+    session: &Session,
+    question: &Question,
+    fit_count: &mut FitCount,
+    commands: &mut Vec<Command>,
+) {
+    let frame = theme::dialog_frame(ctx);
+    let modal = Modal::new(Id::unique("question")).frame(frame).show(ctx, |ui| {
+        ui.set_width(430.0_f32.min(ui.ctx().content_rect().width() - 64.0));
+        match question {
+            Question::PosesAs(incoming) => {
+                poses_question(ui, incoming, fit_count.of(session, incoming), commands);
+            }
+            Question::CameraSize { file, photos } => {
+                let photo = photos.first().and_then(|id| session.scene().photo(*id));
+                let photo_size = photo.map(|photo| (photo.asset.width, photo.asset.height));
+                let size = file.size.unwrap_or_default();
+                camera_question(ui, &file.file_name, size, photo_size.unwrap_or_default(), commands);
+            }
+        }
+    });
+    if modal.should_close() && commands.is_empty() {
+        commands.push(Command::Answer(Answer::Refuse));
+    }
+}
+
+fn poses_question(ui: &mut Ui, incoming: &Incoming, fitting: usize, commands: &mut Vec<Command>) {
+    let count = incoming.pose_count();
     let poses = if count == 1 { "1 pose".to_owned() } else { format!("{count} poses") };
-    ui.heading(format!("{poses} in {file_name}"));
-    ui.add_space(6.0);
+    ui.heading(format!("{poses} in {}", incoming.file_name));
+    ui.add_space(4.0);
+    let verb = if fitting == 1 { "fits" } else { "fit" };
+    ui.label(match fitting {
+        0 => "None fits your files yet: they wait until their photos and meshes come.".to_owned(),
+        _ => format!("{fitting} of {count} {verb} your files."),
+    });
     ui.label("What are they to be?");
     ui.add_space(8.0);
     let annotations = Answer::UsePosesAs(PosesAs::Annotations);
-    answer(ui, theme::primary_button("Start poses"), "My poses: I go on from them.", annotations, commands);
     let reference = Answer::UsePosesAs(PosesAs::Reference);
-    answer(
-        ui,
-        egui::Button::new("Reference"),
-        "Truth or another's poses, to compare with. Read-only.",
-        reference,
-        commands,
-    );
-    answer(ui, egui::Button::new("Cancel"), "Leave this file out.", Answer::Refuse, commands);
+    let compare = "Truth or another's poses, to compare with. Read-only.";
+    primary_answer(ui, "Start poses", "My poses: I go on from them. (Enter)", annotations, commands);
+    answer(ui, Button::new("Reference"), compare, reference, commands);
+    answer(ui, Button::new("Cancel"), "Leave this file out. (Esc)", Answer::Refuse, commands);
 }
 
 fn camera_question(
@@ -78,50 +105,33 @@ fn camera_question(
     commands: &mut Vec<Command>,
 ) {
     ui.heading("The camera is for another size");
-    ui.add_space(6.0);
+    ui.add_space(4.0);
     ui.label(format!("{file_name} is for {w} × {h} pixels, the photo has {} × {}.", photo.0, photo.1));
     ui.add_space(8.0);
-    let scale = "Right if the photo was made smaller or larger as a whole.";
-    answer(ui, theme::primary_button("Scale"), scale, Answer::ScaleCamera, commands);
-    answer(ui, egui::Button::new("Cancel"), "Keep the camera as it is.", Answer::Refuse, commands);
+    let scale = "Right if the photo was made smaller or larger as a whole. (Enter)";
+    primary_answer(ui, "Scale", scale, Answer::ScaleCamera, commands);
+    answer(ui, Button::new("Cancel"), "Keep the camera as it is. (Esc)", Answer::Refuse, commands);
 }
 
-fn answer(ui: &mut Ui, button: egui::Button<'_>, meaning: &str, answer: Answer, commands: &mut Vec<Command>) {
+/// What Enter answers, while no other button has the keyboard.
+fn primary_answer(ui: &mut Ui, text: &str, meaning: &str, reply: Answer, commands: &mut Vec<Command>) {
+    answer(ui, theme::primary_button(text), meaning, reply, commands);
+    if commands.is_empty() && is_entered(ui) {
+        commands.push(Command::Answer(reply));
+    }
+}
+
+fn answer(ui: &mut Ui, button: Button<'_>, meaning: &str, reply: Answer, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        if ui.add_sized([116.0, 30.0], button).clicked() {
-            commands.push(Command::Answer(answer));
+        if ui.add_sized(BUTTON_SIZE, button).clicked() {
+            commands.push(Command::Answer(reply));
         }
-        ui.label(RichText::new(meaning).weak());
+        ui.add(egui::Label::new(RichText::new(meaning).weak()).wrap());
     });
 }
 
-fn shortcuts(ui: &mut Ui, open: &mut Option<Dialog>) {
-    ui.set_width(520.0);
-    ui.horizontal(|ui| {
-        ui.heading("Mouse and keys");
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("Close").clicked() {
-                *open = None;
-            }
-        });
-    });
-    ui.add_space(6.0);
-    egui::ScrollArea::vertical().max_height(ui.ctx().content_rect().height() - 140.0).show(ui, |ui| {
-        Grid::new("gestures").num_columns(2).spacing([20.0, 5.0]).show(ui, |ui| {
-            for (gesture, effect) in GESTURES {
-                row(ui, gesture, effect);
-            }
-            for info in COMMANDS {
-                if let Some(shortcut) = info.shortcut.filter(|shortcut| shortcut.key != "Escape") {
-                    row(ui, &shortcut_text(shortcut), info.tooltip);
-                }
-            }
-        });
-    });
-}
-
-fn row(ui: &mut Ui, gesture: &str, effect: &str) {
-    ui.label(RichText::new(gesture).strong());
-    ui.label(effect);
-    ui.end_row();
+/// Enter was pressed, and no widget has the keyboard for itself.
+pub fn is_entered(ui: &Ui) -> bool {
+    ui.memory(|memory| memory.focused().is_none())
+        && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter))
 }

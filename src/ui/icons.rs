@@ -36,6 +36,8 @@ pub enum Icon {
     Roll {
         left: bool,
     },
+    Fold,
+    Unfold,
 }
 
 /// A button of one icon; `label` is its name for those who do not see it.
@@ -127,7 +129,8 @@ pub fn draw(painter: &Painter, icon: Icon, rect: Rect, stroke: Stroke) {
             line(&[(4.5, 7.0), (9.5, 7.0)]);
         }
         Icon::ChevronRight => line(&[(5.0, 3.0), (9.5, 7.0), (5.0, 11.0)]),
-        Icon::ChevronDown => line(&[(3.0, 5.0), (7.0, 9.5), (11.0, 5.0)]),
+        Icon::Unfold => line(&[(3.0, 9.0), (7.0, 4.5), (11.0, 9.0)]),
+        Icon::Fold | Icon::ChevronDown => line(&[(3.0, 5.0), (7.0, 9.5), (11.0, 5.0)]),
         Icon::Check => line(&[(2.0, 7.5), (5.5, 11.0), (12.0, 3.0)]),
         Icon::Arrow(..) | Icon::Nearer | Icon::Farther => draw_step(icon, &line),
         Icon::Pitch { .. } | Icon::Yaw { .. } | Icon::Roll { .. } => draw_turn(icon, &line),

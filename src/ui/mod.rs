@@ -3,10 +3,18 @@
 mod command_button;
 mod dialogs;
 mod icons;
+mod keymap;
+mod menus;
+mod palette;
 mod panels;
+mod paste_dialog;
+mod preferences;
 mod scenes_dialog;
 mod shortcuts;
+mod shortcuts_sheet;
+mod strip;
 mod theme;
+mod thumbnails;
 mod toasts;
 mod top_bar;
 mod viewport;
@@ -16,11 +24,14 @@ use egui::{CentralPanel, Frame, Panel};
 
 use crate::interact::PhotoView;
 use crate::platform::{SceneId, SceneSummary, StorageUse};
-use crate::session::{Command, Session};
+use crate::session::{Command, Effect, Session};
 
+pub use keymap::{Binding, Keymap, Refusal};
+pub use preferences::{DragModifier, ModifierKey, ModifierMap, Preferences, ThemeChoice};
 pub use scenes_dialog::SceneRequest;
-pub use shortcuts::{pressed_commands, shortcut_text};
+pub use shortcuts::{Pressed, pressed_commands, shortcut_text};
 pub use theme::apply_theme;
+pub use thumbnails::{MOST_SIDE_PX as THUMBNAIL_SIDE_PX, Thumbnails};
 pub use toasts::Toasts;
 pub use viewport::{SharedRenderer, ViewportPlace};
 
@@ -33,6 +44,14 @@ pub struct UiState {
     pub toasts: Toasts,
     pub scenes_dialog: scenes_dialog::State,
     panels: panels::PanelState,
+    pub preferences: Preferences,
+    pub thumbnails: Thumbnails,
+    top_bar: top_bar::State,
+    palette: palette::State,
+    shortcuts_sheet: shortcuts_sheet::State,
+    paste_dialog: paste_dialog::State,
+    fit_count: dialogs::FitCount,
+    strip: strip::State,
     /// Where the viewport was in the last frame.
     pub viewport: Option<ViewportPlace>,
 }
@@ -46,6 +65,10 @@ pub enum Dialog {
 }
 
 impl UiState {
+    pub fn new(preferences: Preferences) -> Self {
+        Self { preferences, ..Self::default() }
+    }
+
     /// Opens the selected object's name for editing, in the list.
     pub fn rename_selected(&mut self, session: &Session) {
         self.panels_hidden = false;
@@ -54,6 +77,20 @@ impl UiState {
 
     pub fn toggle(&mut self, dialog: Dialog) {
         self.open = if self.open == Some(dialog) { None } else { Some(dialog) };
+    }
+
+    /// Carries out what the interface can do by itself; gives back the rest.
+    pub fn take_effect(&mut self, effect: Effect, ctx: &egui::Context) -> Option<Effect> {
+        match effect {
+            Effect::AskForPose => self.open = Some(Dialog::PastePose),
+            Effect::TogglePalette => self.toggle(Dialog::Palette),
+            Effect::ToggleShortcuts => self.toggle(Dialog::Shortcuts),
+            Effect::TogglePanels => self.panels_hidden = !self.panels_hidden,
+            Effect::ToggleTheme => self.preferences.toggle_theme(ctx.theme()),
+            Effect::Notify(notice) => self.toasts.add(notice),
+            other => return Some(other),
+        }
+        None
     }
 }
 
@@ -66,8 +103,8 @@ pub struct Surroundings<'a> {
     /// Its masks, tinted.
     pub masks: Option<std::sync::Arc<crate::photo::Pixels>>,
     pub saving: Saving,
-    /// What is being loaded, for the user to read.
-    pub busy: Option<String>,
+    /// What is being loaded.
+    pub busy: Option<Busy>,
     pub update_ready: bool,
     /// Files are being dragged over the window.
     pub files_hover: bool,
@@ -92,6 +129,13 @@ pub struct StoreView<'a> {
     pub now_ms: f64,
 }
 
+/// What the user waits for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Busy {
+    pub text: String,
+    pub can_cancel: bool,
+}
+
 /// Is the scene in the browser's storage?
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Saving {
@@ -107,28 +151,42 @@ pub struct Asked {
     pub commands: Vec<Command>,
     pub scene_requests: Vec<SceneRequest>,
     pub apply_update: bool,
+    pub cancel_loading: bool,
 }
 
 /// Draws a whole frame.
 pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, state: &mut UiState) -> Asked {
     let mut asked = Asked::default();
-    Panel::top("top bar").frame(theme::bar_frame()).show(ui, |ui| {
-        top_bar::draw(ui, session, around, &mut asked);
+    ui.ctx().set_theme(state.preferences.theme.preference());
+    state.preferences.keymap.put_on(ui.ctx());
+    let visuals = ui.ctx().global_style().visuals.clone();
+    Panel::top("top bar").frame(theme::bar_frame(&visuals)).show(ui, |ui| {
+        top_bar::draw(ui, session, around, &mut state.preferences, &mut state.top_bar, &mut asked);
     });
     // An empty scene has nothing to list.
     if !state.panels_hidden && !session.scene().is_empty() {
         Panel::left("side panel")
-            .frame(theme::panel_frame())
+            .frame(theme::panel_frame(&visuals))
             .default_size(theme::PANEL_WIDTH)
             .size_range(panels::WIDTHS)
             .resizable(true)
             .show(ui, |ui| panels::draw(ui, session, &mut state.panels, &mut asked.commands));
     }
-    CentralPanel::default().frame(Frame::NONE.fill(theme::VIEWPORT_BACKGROUND)).show(ui, |ui| {
-        if session.scene().is_empty() {
+    if !state.panels_hidden && strip::is_shown(session) {
+        Panel::bottom("photo strip").frame(theme::bar_frame(&visuals)).show(ui, |ui| {
+            let UiState { preferences, strip, thumbnails, .. } = state;
+            strip::draw(ui, session, preferences, strip, thumbnails, &mut asked.commands);
+        });
+    }
+    let is_empty = session.scene().is_empty();
+    // Where there is no photo to judge, the ground is the theme's.
+    let ground = if is_empty { visuals.panel_fill } else { theme::VIEWPORT_BACKGROUND };
+    CentralPanel::default().frame(Frame::NONE.fill(ground)).show(ui, |ui| {
+        if is_empty {
             state.viewport = None;
             welcome::draw(ui, around, &mut asked);
         } else {
+            theme::use_dark(ui);
             state.viewport = Some(viewport::draw(ui, session, around, &mut asked.commands));
         }
     });

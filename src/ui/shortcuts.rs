@@ -1,68 +1,40 @@
-//! Keys to commands, and their names.
+//! Keys that went down, as commands.
 
-use egui::{Event, Key};
+use egui::Event;
 
-use crate::session::{COMMANDS, CommandId, Shortcut};
+use super::keymap::{Binding, Keymap};
+use crate::session::CommandId;
+
+/// A command whose key went down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pressed {
+    pub id: CommandId,
+    /// Of a nudge: 10 with Shift, 0.1 with Alt.
+    pub factor: f64,
+}
 
 /// The commands whose keys went down in this frame; their key events are taken, so that no widget sees them too.
-pub fn pressed_commands(input: &mut egui::InputState) -> Vec<CommandId> {
+pub fn pressed_commands(input: &mut egui::InputState, keymap: &Keymap) -> Vec<Pressed> {
     let mut pressed = Vec::new();
     input.events.retain(|event| {
-        let Event::Key { key, physical_key, pressed: true, modifiers, .. } = event else { return true };
-        let command = COMMANDS.iter().find(|info| {
-            info.shortcut
-                .is_some_and(|shortcut| matches(shortcut, *key, physical_key.unwrap_or(*key), *modifiers))
-        });
-        pressed.extend(command.map(|info| info.id));
+        let binding = match event {
+            Event::Key { key, physical_key, pressed: true, modifiers, .. } => {
+                Binding::pressed(*key, *physical_key, *modifiers)
+            }
+            // A desktop says this in place of the key.
+            Event::Copy => Binding { key: egui::Key::C, ctrl: true, shift: false, alt: false },
+            _ => return true,
+        };
+        let command = keymap.command_of(binding);
+        pressed.extend(command.map(|(id, factor)| Pressed { id, factor }));
         command.is_none()
     });
+    // A browser says the key and the copy.
+    pressed.dedup_by(|a, b| a.id == b.id && a.id == CommandId::CopyPose);
     pressed
 }
 
-fn matches(shortcut: Shortcut, key: Key, physical_key: Key, modifiers: egui::Modifiers) -> bool {
-    // A question mark is somewhere else on every keyboard: it goes by what is printed on the key.
-    if shortcut.key == "?" {
-        return key == Key::Questionmark || (key == Key::Slash && modifiers.shift);
-    }
-    let wanted = Key::from_name(shortcut.key);
-    wanted == Some(physical_key)
-        && modifiers.command == shortcut.ctrl
-        && modifiers.shift == shortcut.shift
-        && modifiers.alt == shortcut.alt
-}
-
-/// A shortcut as it is printed in menus.
-pub fn shortcut_text(shortcut: Shortcut) -> String {
-    let mut text = String::new();
-    if shortcut.ctrl {
-        text += "Ctrl+";
-    }
-    if shortcut.alt {
-        text += "Alt+";
-    }
-    if shortcut.shift {
-        text += "Shift+";
-    }
-    text + match shortcut.key {
-        "Escape" => "Esc",
-        "ArrowLeft" => "Left",
-        "ArrowRight" => "Right",
-        "ArrowUp" => "Up",
-        "ArrowDown" => "Down",
-        "OpenBracket" => "[",
-        "CloseBracket" => "]",
-        key => key,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_shortcut_names_a_key() {
-        for shortcut in COMMANDS.iter().filter_map(|info| info.shortcut) {
-            assert!(shortcut.key == "?" || Key::from_name(shortcut.key).is_some(), "{}", shortcut.key);
-        }
-    }
+/// A shortcut of the table as it is printed.
+pub fn shortcut_text(shortcut: crate::session::Shortcut) -> String {
+    Binding::of_shortcut(shortcut).map(|binding| binding.text()).unwrap_or_default()
 }

@@ -1,6 +1,6 @@
 //! Messages that come and go; errors stay until they are read.
 
-use egui::{Align2, Area, Color32, Frame, Id, Margin, Order, Sense, Stroke, Vec2};
+use egui::{Align2, Area, Id, Order, Sense, Vec2};
 
 use super::icons::{Icon, icon_button};
 use super::theme;
@@ -85,11 +85,7 @@ fn draw_one(ui: &mut egui::Ui, notice: &Notice) -> bool {
         Severity::Warning => theme::WARNING,
         Severity::Error => theme::ERROR,
     };
-    let frame = Frame::NONE
-        .fill(Color32::from_rgb(42, 46, 56))
-        .stroke(Stroke::new(1.0, color.gamma_multiply(0.6)))
-        .corner_radius(8)
-        .inner_margin(Margin::symmetric(12, 8));
+    let frame = theme::toast_frame(ui.visuals(), color);
     let mut closed = false;
     frame.show(ui, |ui| {
         ui.set_width(330.0);

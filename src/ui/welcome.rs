@@ -1,6 +1,6 @@
 //! The empty scene: what to drop, and a way to try without having anything.
 
-use egui::{Align2, Area, Color32, CornerRadius, Id, Order, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
+use egui::{Align2, Area, CornerRadius, Id, Order, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
 
 use super::scenes_dialog::words;
 use super::{Asked, SceneRequest, Surroundings, theme};
@@ -81,7 +81,10 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
         ui.horizontal(|ui| {
             ui.add_space(ui.available_width() / 2.0 - 60.0);
             ui.spinner();
-            ui.label(busy);
+            ui.label(&busy.text);
+            if busy.can_cancel && ui.small_button("Cancel").clicked() {
+                asked.cancel_loading = true;
+            }
         });
     }
 }
@@ -115,13 +118,14 @@ fn step(ui: &mut Ui, number: &str, what: &str, how: &str) {
     ui.horizontal(|ui| {
         ui.add_space(64.0);
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(24.0), Sense::hover());
-        ui.painter().circle_filled(rect.center(), 11.0, Color32::from_rgb(40, 60, 92));
+        let fill = ui.visuals().selection.bg_fill;
+        ui.painter().circle_filled(rect.center(), 11.0, fill);
         ui.painter().text(
             rect.center(),
             Align2::CENTER_CENTER,
             number,
             egui::FontId::proportional(13.0),
-            Color32::WHITE,
+            ui.visuals().selection.stroke.color,
         );
         ui.label(RichText::new(what).strong());
         ui.label(RichText::new(how).weak());
@@ -129,7 +133,8 @@ fn step(ui: &mut Ui, number: &str, what: &str, how: &str) {
 }
 
 fn drop_border(ui: &Ui, rect: egui::Rect, hovered: bool) {
-    let color = if hovered { theme::ACCENT } else { Color32::from_rgb(56, 61, 73) };
+    let quiet = ui.visuals().widgets.noninteractive.bg_stroke.color;
+    let color = if hovered { theme::ACCENT } else { quiet };
     let stroke = Stroke::new(if hovered { 2.0 } else { 1.5 }, color);
     if hovered {
         ui.painter().rect(

@@ -39,6 +39,9 @@ const RESERVED: [(&str, &[&str]); 11] = [
     ("serde", &["formats", "study", "api", "cli"]),
 ];
 
+/// Files that may use a library beyond its rooms.
+const EXEMPT: [(&str, &str); 1] = [("ui/preferences.rs", "serde")];
+
 #[test]
 fn imports_only_go_down() {
     let mut violations = Vec::new();
@@ -66,7 +69,8 @@ fn libraries_stay_in_their_rooms() {
     for (path, room, text) in sources() {
         for (index, line) in code_lines(&text) {
             for (name, rooms) in RESERVED {
-                if names(line, name) && !rooms.contains(&room.as_str()) {
+                let exempt = EXEMPT.iter().any(|(file, allowed)| path.ends_with(file) && *allowed == name);
+                if names(line, name) && !rooms.contains(&room.as_str()) && !exempt {
                     violations.push(format!("{}:{index}: {room} names {name}", path.display()));
                 }
             }

@@ -5,37 +5,68 @@
 
 mod wire;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
 use crate::formats::{NamedFile, kept, read_mesh_with, read_photo};
 use crate::mesh::{Bvh, Material, Mesh, MeshData, Paint};
-use crate::photo::Pixels;
+use crate::photo::{Pixels, decode, thumbnail};
 use crate::platform::Background;
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
+use crate::ui::THUMBNAIL_SIDE_PX;
 
 use wire::{Reader, Writer};
 
 /// A material without texture, on the wire.
 const NO_TEXTURE: u32 = u32::MAX;
+/// So many jobs are with the worker at once: it always has the next one, and what is cancelled is hardly begun.
+const MOST_SENT: usize = 2;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JobKind {
     Photo,
     Mesh,
+    Thumbnail,
+}
+
+impl JobKind {
+    fn code(self) -> u8 {
+        match self {
+            Self::Photo => 0,
+            Self::Mesh => 1,
+            Self::Thumbnail => 2,
+        }
+    }
+}
+
+/// Which of the waiting jobs is next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Urgency {
+    /// The user looks at the place where it belongs.
+    Next,
+    InTurn,
 }
 
 /// What a job made of a file.
 pub enum Done {
     Photo(Arc<PhotoAsset>, Arc<Pixels>),
     Mesh(Arc<MeshAsset>, Vec<String>),
+    Thumbnail(Pixels),
+}
+
+/// What is asked of the worker.
+struct Job {
+    kind: JobKind,
+    file: NamedFile,
+    companions: Vec<NamedFile>,
 }
 
 /// The jobs that are under way.
 pub struct Jobs {
     background: Background,
     next_id: u64,
-    files: HashMap<u64, (JobKind, NamedFile, Vec<NamedFile>)>,
+    waiting: VecDeque<(u64, Job)>,
+    sent: HashMap<u64, Job>,
 }
 
 impl Jobs {
@@ -44,37 +75,68 @@ impl Jobs {
         Self {
             background: Background::new(run_job, move || ctx.request_repaint()),
             next_id: 0,
-            files: HashMap::new(),
+            waiting: VecDeque::new(),
+            sent: HashMap::new(),
         }
     }
 
     /// `companions` are the files that a mesh asks for.
-    pub fn submit(&mut self, kind: JobKind, file: NamedFile, companions: &[NamedFile]) -> u64 {
+    pub fn submit(
+        &mut self,
+        kind: JobKind,
+        file: NamedFile,
+        companions: &[NamedFile],
+        urgency: Urgency,
+    ) -> u64 {
         self.next_id += 1;
-        self.background.submit(self.next_id, write_request(kind, &file, companions));
-        self.files.insert(self.next_id, (kind, file, companions.to_vec()));
+        let job = (self.next_id, Job { kind, file, companions: companions.to_vec() });
+        match urgency {
+            Urgency::Next => self.waiting.push_front(job),
+            Urgency::InTurn => self.waiting.push_back(job),
+        }
+        self.send_next();
         self.next_id
+    }
+
+    /// Forgets jobs: those that wait are not begun, and what comes of the others is nobody's.
+    pub fn cancel(&mut self, is_cancelled: impl Fn(u64) -> bool) {
+        self.waiting.retain(|(id, ..)| !is_cancelled(*id));
+        self.send_next();
+    }
+
+    pub fn is_idle(&self) -> bool {
+        self.sent.is_empty()
+    }
+
+    fn send_next(&mut self) {
+        while self.sent.len() < MOST_SENT {
+            let Some((id, job)) = self.waiting.pop_front() else { return };
+            self.background.submit(id, write_request(job.kind, &job.file, &job.companions));
+            self.sent.insert(id, job);
+        }
     }
 
     /// What has come back since the last call; an error is a sentence without the file's name.
     pub fn poll(&mut self) -> Vec<(u64, NamedFile, Result<Done, String>)> {
         let replies = self.background.poll().into_iter();
-        let known = replies.filter_map(|(id, reply)| Some((id, self.files.remove(&id)?, reply)));
-        known
-            .map(|(id, (kind, file, companions), reply)| {
+        let known = replies.filter_map(|(id, reply)| Some((id, self.sent.remove(&id)?, reply)));
+        let done = known
+            .map(|(id, Job { kind, file, companions }, reply)| {
                 let done = match reply {
                     Ok(bytes) => read_reply(kind, &file, &companions, &bytes),
                     Err(crash) => Err(format!("reading it crashed ({crash}); please report this file")),
                 };
                 (id, file, done)
             })
-            .collect()
+            .collect();
+        self.send_next();
+        done
     }
 }
 
 fn write_request(kind: JobKind, file: &NamedFile, companions: &[NamedFile]) -> Vec<u8> {
     let mut request = Writer::default();
-    request.byte(if kind == JobKind::Photo { 0 } else { 1 });
+    request.byte(kind.code());
     for NamedFile { name, bytes } in std::iter::once(file).chain(companions) {
         request.byte(1);
         request.bytes(name.as_bytes());
@@ -123,6 +185,9 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
         0 => read_photo(&file)
             .map(|(asset, pixels)| write_photo(&asset, &pixels))
             .map_err(|error| error.to_string()),
+        2 => decode(&file.bytes)
+            .map(|photo| write_pixels(&thumbnail(&photo.pixels, THUMBNAIL_SIDE_PX)))
+            .map_err(|error| error.to_string()),
         _ => read_mesh_with(&file, &companions)
             .map(|(asset, warnings)| write_mesh(&asset, &warnings))
             .map_err(|error| error.to_string()),
@@ -138,6 +203,7 @@ fn read_reply(
     let mut reader = Reader::new(reply);
     let done = match reader.byte() {
         Some(1) if kind == JobKind::Photo => read_photo_reply(file, &mut reader),
+        Some(1) if kind == JobKind::Thumbnail => read_pixels(&mut reader).map(Done::Thumbnail),
         Some(1) => read_mesh_reply(file, companions, &mut reader),
         _ => {
             let message = reader.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned());
@@ -151,17 +217,30 @@ fn write_photo(asset: &PhotoAsset, pixels: &Pixels) -> Vec<u8> {
     let mut writer = Writer::default();
     writer.bytes(asset.sha256.to_string().as_bytes());
     writer.number(asset.exif_focal_px.unwrap_or(0.0));
+    writer.raw(&write_pixels(pixels));
+    writer.finish()
+}
+
+fn write_pixels(pixels: &Pixels) -> Vec<u8> {
+    let mut writer = Writer::default();
     writer.number(f64::from(pixels.width));
     writer.number(f64::from(pixels.height));
     writer.bytes(&pixels.rgba);
     writer.finish()
 }
 
+fn read_pixels(reader: &mut Reader<'_>) -> Option<Pixels> {
+    let (width, height) = (reader.number()? as u32, reader.number()? as u32);
+    let rgba = reader.bytes()?.to_vec();
+    // A texture of another size than its bytes would be a crash.
+    (rgba.len() as u64 == 4 * u64::from(width) * u64::from(height)).then_some(Pixels { width, height, rgba })
+}
+
 fn read_photo_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
     let sha256 = read_hash(reader)?;
     let exif_focal_px = Some(reader.number()?).filter(|focal_px| *focal_px > 0.0);
-    let (width, height) = (reader.number()? as u32, reader.number()? as u32);
-    let pixels = Pixels { width, height, rgba: reader.bytes()?.to_vec() };
+    let pixels = read_pixels(reader)?;
+    let (width, height) = (pixels.width, pixels.height);
     let asset = PhotoAsset {
         file_name: file.name.clone(),
         sha256,
@@ -257,6 +336,18 @@ mod tests {
 
     fn run(kind: JobKind, file: &NamedFile, companions: &[NamedFile]) -> Result<Done, String> {
         read_reply(kind, file, companions, &run_job(&write_request(kind, file, companions)))
+    }
+
+    #[test]
+    fn a_thumbnail_is_small_and_keeps_the_shape() {
+        let pixels = Pixels { width: 400, height: 100, rgba: [10, 20, 30, 255].repeat(40_000) };
+        let png = crate::photo::png_rgba(&pixels).unwrap();
+        let Ok(Done::Thumbnail(small)) = run(JobKind::Thumbnail, &file("wide.png", &png), &[]) else {
+            panic!("no thumbnail")
+        };
+        assert_eq!((small.width, small.height), (160, 40));
+        assert!(small.rgba.chunks(4).all(|pixel| pixel == [10, 20, 30, 255]));
+        assert!(run(JobKind::Thumbnail, &file("a.png", b"nothing"), &[]).is_err());
     }
 
     #[test]

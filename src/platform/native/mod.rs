@@ -25,8 +25,13 @@ pub fn spawn(future: impl Future<Output = ()> + 'static) {
 }
 
 /// Asks for files and hands over those that can be read; each of the others is an error.
-pub fn pick_files(on_picked: impl FnOnce(Vec<Result<FileBytes, String>>) + 'static) {
-    if let Some(paths) = rfd::FileDialog::new().set_title("Open files").pick_files() {
+/// Without extensions, all are shown.
+pub fn pick_files(extensions: &[&str], on_picked: impl FnOnce(Vec<Result<FileBytes, String>>) + 'static) {
+    let mut dialog = rfd::FileDialog::new().set_title("Open files");
+    if !extensions.is_empty() {
+        dialog = dialog.add_filter("Files of this kind", extensions);
+    }
+    if let Some(paths) = dialog.pick_files() {
         on_picked(paths.iter().map(|path| read(path)).collect());
     }
 }

@@ -7,9 +7,11 @@ use wasm_bindgen_futures::JsFuture;
 use super::describe;
 use crate::platform::{EXAMPLE_PATH, FileBytes};
 
-/// Opens the browser's file dialog. Must be called soon after a click or a key, or the browser ignores it.
-pub fn pick_files(on_picked: impl FnOnce(Vec<Result<FileBytes, String>>) + 'static) {
+/// Opens the browser's file dialog for files with these extensions, or for all. Must be called soon after a click or a key, or the browser ignores it.
+pub fn pick_files(extensions: &[&str], on_picked: impl FnOnce(Vec<Result<FileBytes, String>>) + 'static) {
     let Some(input) = file_input() else { return };
+    let accepted: Vec<String> = extensions.iter().map(|extension| format!(".{extension}")).collect();
+    input.set_accept(&accepted.join(","));
     let chosen = input.clone();
     let on_change = Closure::once_into_js(move || {
         wasm_bindgen_futures::spawn_local(async move {

@@ -53,7 +53,7 @@ fn mode_choice(ui: &mut Ui, look: &mut Look) {
         })
         .response;
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Overlay mode"));
-    response.on_hover_text(tooltip(CommandId::NextOverlay.info()));
+    response.on_hover_text(tooltip(ui.ctx(), CommandId::NextOverlay.info()));
 }
 
 fn toggles(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
