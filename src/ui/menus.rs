@@ -45,12 +45,7 @@ pub const MENUS: [MenuPlan; 5] = [
         title: "Edit",
         groups: &[
             &[CommandId::Undo, CommandId::Redo, CommandId::Cancel],
-            &[
-                CommandId::CopyPose,
-                CommandId::CopyPoseNumPy,
-                CommandId::CopyPoseJson,
-                CommandId::PastePose,
-            ],
+            &[CommandId::CopyPose, CommandId::CopyPoseNumPy, CommandId::CopyPoseJson, CommandId::PastePose],
             &[
                 CommandId::SelectAll,
                 CommandId::DuplicateObject,
@@ -130,7 +125,8 @@ pub fn draw(
 ) {
     ui.set_min_width(240.0);
     let height = ui.ctx().content_rect().height() - 64.0;
-    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+    // Scrolls in windows that are too low for it alone.
+    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
         for (index, group) in plan.groups.iter().enumerate() {
             if index > 0 {
                 ui.separator();
@@ -229,7 +225,8 @@ mod tests {
     #[test]
     fn every_command_of_the_table_is_in_its_menu_once() {
         for info in COMMANDS {
-            let places = MENUS.iter().flat_map(|plan| plan.groups.iter().map(move |group| (plan.title, group)));
+            let places =
+                MENUS.iter().flat_map(|plan| plan.groups.iter().map(move |group| (plan.title, group)));
             let places: Vec<&str> =
                 places.filter(|(_, group)| group.contains(&info.id)).map(|(title, _)| title).collect();
             let expected = match info.menu {

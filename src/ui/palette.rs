@@ -82,7 +82,8 @@ fn keys(ctx: &Context, keymap: &Keymap) -> (isize, bool, bool) {
         let (is_entered, is_escaped) = (pressed(Key::Enter) > 0, pressed(Key::Escape) > 0);
         let own = keymap.binding(CommandId::TogglePalette);
         let is_toggled = own.is_some_and(|own| {
-            let modifiers = Modifiers { alt: own.alt, shift: own.shift, command: own.ctrl, ..Modifiers::NONE };
+            let modifiers =
+                Modifiers { alt: own.alt, shift: own.shift, command: own.ctrl, ..Modifiers::NONE };
             input.consume_key(modifiers, own.key)
         });
         (step, is_entered, is_escaped || is_toggled)
@@ -113,7 +114,10 @@ fn list(ui: &mut Ui, rows: &[Entry], chosen: usize, follows: bool) -> Option<usi
     ui.spacing_mut().item_spacing.y = 0.0;
     let room = ui.ctx().content_rect().height() * 0.86 - 120.0;
     let height = (ROW_HEIGHT * rows.len().min(MOST_ROWS_SHOWN) as f32).min(room.max(ROW_HEIGHT * 3.0));
-    let mut area = egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
+    let mut area = egui::ScrollArea::vertical()
+        .max_height(height)
+        .min_scrolled_height(height)
+        .auto_shrink([false, true]);
     if follows {
         let offset = (chosen as f32 + 0.5) * ROW_HEIGHT - height / 2.0;
         area = area.vertical_scroll_offset(offset.max(0.0));
@@ -133,9 +137,7 @@ fn draw_row(ui: &mut Ui, entry: &Entry, is_chosen: bool) -> bool {
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW_HEIGHT), Sense::click());
     let enabled = entry.unavailable.is_none();
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, enabled, is_chosen, &entry.title)
-    });
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, is_chosen, &entry.title));
     let visuals = ui.visuals();
     if is_chosen {
         ui.painter().rect_filled(rect, 6.0, visuals.selection.bg_fill);
@@ -149,7 +151,8 @@ fn draw_row(ui: &mut Ui, entry: &Entry, is_chosen: bool) -> bool {
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let painter = ui.painter().with_clip_rect(inside.intersect(ui.clip_rect()));
-    let right = painter.text(inside.right_center(), Align2::RIGHT_CENTER, &entry.shortcut, body.clone(), weak);
+    let right =
+        painter.text(inside.right_center(), Align2::RIGHT_CENTER, &entry.shortcut, body.clone(), weak);
     let title = painter.text(inside.left_center(), Align2::LEFT_CENTER, &entry.title, body, title_color);
     let details = entry.unavailable.unwrap_or(&entry.details);
     let between = Rect::from_x_y_ranges(title.right() + 12.0..=right.left() - 12.0, inside.y_range());
@@ -159,9 +162,8 @@ fn draw_row(ui: &mut Ui, entry: &Entry, is_chosen: bool) -> bool {
 }
 
 fn entries(session: &Session, keymap: &Keymap) -> Vec<Entry> {
-    let listed = COMMANDS
-        .iter()
-        .filter(|info| !matches!(info.id, CommandId::TogglePalette | CommandId::Cancel));
+    let listed =
+        COMMANDS.iter().filter(|info| !matches!(info.id, CommandId::TogglePalette | CommandId::Cancel));
     let mut entries: Vec<Entry> = listed
         .map(|info| Entry {
             title: info.text.trim_end_matches('…').to_owned(),
@@ -200,10 +202,8 @@ fn ranked(entries: Vec<Entry>, query: &str) -> Vec<Entry> {
     if query.is_empty() {
         return entries;
     }
-    let mut scored: Vec<(i32, Entry)> = entries
-        .into_iter()
-        .filter_map(|entry| Some((score_of(&entry, query)?, entry)))
-        .collect();
+    let mut scored: Vec<(i32, Entry)> =
+        entries.into_iter().filter_map(|entry| Some((score_of(&entry, query)?, entry))).collect();
     // Stable: what fits equally well stays in the menus' order.
     scored.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
     scored.into_iter().map(|(_, entry)| entry).collect()
@@ -224,7 +224,8 @@ pub fn fuzzy_score(text: &str, query: &str) -> Option<i32> {
     const IN_RUN: i32 = 12;
     const AT_START: i32 = 8;
     let text: Vec<char> = text.chars().flat_map(char::to_lowercase).collect();
-    let wanted: Vec<char> = query.chars().flat_map(char::to_lowercase).filter(|c| !c.is_whitespace()).collect();
+    let wanted: Vec<char> =
+        query.chars().flat_map(char::to_lowercase).filter(|c| !c.is_whitespace()).collect();
     // The best score with the letter so far at each place; the next letter comes after it.
     let mut best: Vec<Option<i32>> = vec![None; text.len()];
     for (number, letter) in wanted.iter().enumerate() {

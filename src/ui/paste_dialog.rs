@@ -18,12 +18,7 @@ pub struct State {
 }
 
 /// Draws the dialog; true if it is to be closed.
-pub fn draw(
-    ctx: &egui::Context,
-    session: &Session,
-    state: &mut State,
-    commands: &mut Vec<Command>,
-) -> bool {
+pub fn draw(ctx: &egui::Context, session: &Session, state: &mut State, commands: &mut Vec<Command>) -> bool {
     let is_new = !std::mem::replace(&mut state.was_open, true);
     if is_new {
         state.text.clear();
@@ -39,7 +34,9 @@ pub fn draw(
         ui.set_width(430.0_f32.min(ui.ctx().content_rect().width() - 64.0));
         ui.heading(format!("Pose of {name}"));
         ui.add_space(4.0);
-        ui.weak("Paste a 4×4, R and t, R or t alone: as rows, NumPy or JSON. Millimetres, OpenCV camera axes.");
+        ui.weak(
+            "Paste a 4×4, R and t, R or t alone: as rows, NumPy or JSON. Millimetres, OpenCV camera axes.",
+        );
         ui.add_space(8.0);
         field(ui, &mut state.text, is_new);
         ui.add_space(4.0);

@@ -34,7 +34,9 @@ pub fn draw(ctx: &Context, preferences: &mut Preferences, state: &mut State) -> 
         is_closed = header(ui, preferences, state);
         ui.separator();
         let height = (ui.ctx().content_rect().height() - 150.0).max(120.0);
-        egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        // Without the least height, the area would stay as low as it was when it was first drawn.
+        let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        area.auto_shrink([false, true]).show(ui, |ui| {
             contents(ui, preferences, state);
         });
     });
@@ -51,8 +53,14 @@ fn is_toggled(ctx: &Context, keymap: &Keymap) -> bool {
     if ctx.text_edit_focused() {
         return false;
     }
-    let pressed = super::pressed_commands;
-    ctx.input_mut(|input| pressed(input, keymap)).iter().any(|key| key.id == CommandId::ToggleShortcuts)
+    let own = keymap.binding(CommandId::ToggleShortcuts);
+    let is_own = |event: &Event| match event {
+        Event::Key { key, physical_key, pressed: true, modifiers, .. } => {
+            own == Some(Binding::pressed(*key, *physical_key, *modifiers))
+        }
+        _ => false,
+    };
+    ctx.input(|input| input.events.iter().any(is_own))
 }
 
 /// Takes the key that is pressed for the command that waits for one.
@@ -147,8 +155,7 @@ fn contents(ui: &mut Ui, preferences: &mut Preferences, state: &mut State) {
 
 fn gestures(ui: &mut Ui, modifiers: &ModifierMap, matches: &dyn Fn(&str) -> bool) -> bool {
     let name = |what| modifiers.get(what).name();
-    let (fine, roll, depth) =
-        (name(DragModifier::Fine), name(DragModifier::Roll), name(DragModifier::Depth));
+    let (fine, roll, depth) = (name(DragModifier::Fine), name(DragModifier::Roll), name(DragModifier::Depth));
     let gestures = [
         ("Click".to_owned(), "select an object (Alt: the one behind)"),
         ("Drag an object".to_owned(), "move it; the point you grab stays under the cursor"),

@@ -1,8 +1,8 @@
 //! The strip of photos: thumbnails with names and what has been done in each, and how far the work is.
 
 use egui::{
-    Align, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, TextStyle, TextWrapMode, Ui, Vec2,
-    WidgetText, pos2, vec2,
+    Align, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, TextStyle, TextWrapMode, Ui, Vec2, WidgetText,
+    pos2, vec2,
 };
 
 use super::icons::{Icon, icon_button};
@@ -79,8 +79,7 @@ fn head(ui: &mut Ui, session: &Session, folded: &mut bool) {
     let confirmed = progress.filter(|progress| *progress == Progress::Confirmed).count();
     let count = scene.photos.len();
     ui.horizontal(|ui| {
-        let (icon, label) =
-            if *folded { (Icon::Unfold, "Show photos") } else { (Icon::Fold, "Fold photos") };
+        let (icon, label) = if *folded { (Icon::Unfold, "Show photos") } else { (Icon::Fold, "Fold photos") };
         if icon_button(ui, icon, label, label, true).clicked() {
             *folded = !*folded;
         }
@@ -190,7 +189,11 @@ fn mark(painter: &Painter, center: Pos2, progress: Progress, visuals: &egui::Vis
     let (radius, width) = (4.0, 1.4);
     match progress {
         Progress::Untouched => {
-            painter.circle_stroke(center, radius, Stroke::new(width, on_selection(visuals.weak_text_color())));
+            painter.circle_stroke(
+                center,
+                radius,
+                Stroke::new(width, on_selection(visuals.weak_text_color())),
+            );
         }
         Progress::Carried => {
             let color = on_selection(theme::warning(visuals));
