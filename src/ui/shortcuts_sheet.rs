@@ -218,19 +218,16 @@ fn rows(
     keymap: &mut Keymap,
     recording: &mut Option<Recording>,
 ) {
-    Grid::new(name).num_columns(2 * commands_in_row).spacing([16.0, 4.0]).show(ui, |ui| {
+    let grid = Grid::new(name).num_columns(2 * commands_in_row).min_col_width(136.0);
+    grid.spacing([16.0, 4.0]).show(ui, |ui| {
         for row in ids.chunks(commands_in_row) {
             for id in row {
-                ui.add_sized([190.0, 22.0], left_label(id.info().text)).on_hover_text(id.info().tooltip);
+                ui.label(id.info().text).on_hover_text(id.info().tooltip);
                 key_cell(ui, *id, keymap, recording);
             }
             ui.end_row();
         }
     });
-}
-
-fn left_label(text: &str) -> egui::Label {
-    egui::Label::new(text).halign(egui::Align::Min)
 }
 
 /// The command's key, to click and press another.
