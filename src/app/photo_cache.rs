@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::PinPose;
 use crate::photo::Pixels;
 use crate::scene::Sha256;
 
@@ -52,6 +53,35 @@ impl PhotoCache {
             let is_free = |(kept, _): &(Sha256, Arc<Pixels>)| Some(*kept) != self.shown;
             let Some(oldest) = self.kept.iter().rposition(is_free) else { break };
             bytes -= self.kept.remove(oldest).1.rgba.len();
+        }
+    }
+}
+
+impl PinPose {
+    /// Makes sure that the shown photo's pixels are there or on their way, and then the next one's.
+    pub(super) fn want_pixels(&mut self) {
+        let Some(photo) = self.session.photo() else { return };
+        let sha256 = photo.asset.sha256;
+        self.photos.show(sha256);
+        if self.photos.get(sha256).is_none() {
+            if self.photos.wanted != Some(sha256) {
+                self.photos.wanted = Some(sha256);
+                self.loading.decode(&photo.asset);
+            }
+        } else if !self.loading.is_busy() && self.loading.is_worker_idle() {
+            self.decode_next_photo();
+        }
+    }
+
+    fn decode_next_photo(&mut self) {
+        let photos = &self.session.scene().photos;
+        let shown = self.session.photo().map(|photo| photo.id);
+        let position = photos.iter().position(|photo| Some(photo.id) == shown);
+        let Some(next) = position.and_then(|position| photos.get(position + 1)) else { return };
+        let sha256 = next.asset.sha256;
+        if self.photos.get(sha256).is_none() && self.photos.prefetched != Some(sha256) {
+            self.photos.prefetched = Some(sha256);
+            self.loading.decode_ahead(&next.asset);
         }
     }
 }

@@ -126,7 +126,8 @@ pub fn draw(
 ) {
     ui.set_min_width(240.0);
     let height = ui.ctx().content_rect().height() - 64.0;
-    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+    // Scrolls in windows that are too low for it alone.
+    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
         for (index, group) in plan.groups.iter().enumerate() {
             if index > 0 {
                 ui.separator();

@@ -114,7 +114,10 @@ fn list(ui: &mut Ui, rows: &[Entry], chosen: usize, follows: bool) -> Option<usi
     ui.spacing_mut().item_spacing.y = 0.0;
     let room = ui.ctx().content_rect().height() * 0.86 - 120.0;
     let height = (ROW_HEIGHT * rows.len().min(MOST_ROWS_SHOWN) as f32).min(room.max(ROW_HEIGHT * 3.0));
-    let mut area = egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
+    let mut area = egui::ScrollArea::vertical()
+        .max_height(height)
+        .min_scrolled_height(height)
+        .auto_shrink([false, true]);
     if follows {
         let offset = (chosen as f32 + 0.5) * ROW_HEIGHT - height / 2.0;
         area = area.vertical_scroll_offset(offset.max(0.0));

@@ -34,7 +34,9 @@ pub fn draw(ctx: &Context, preferences: &mut Preferences, state: &mut State) -> 
         is_closed = header(ui, preferences, state);
         ui.separator();
         let height = (ui.ctx().content_rect().height() - 150.0).max(120.0);
-        egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        // Without the least height, the area would stay as low as it was when it was first drawn.
+        let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        area.auto_shrink([false, true]).show(ui, |ui| {
             contents(ui, preferences, state);
         });
     });
@@ -51,8 +53,14 @@ fn is_toggled(ctx: &Context, keymap: &Keymap) -> bool {
     if ctx.text_edit_focused() {
         return false;
     }
-    let pressed = super::pressed_commands;
-    ctx.input_mut(|input| pressed(input, keymap)).iter().any(|key| key.id == CommandId::ToggleShortcuts)
+    let own = keymap.binding(CommandId::ToggleShortcuts);
+    let is_own = |event: &Event| match event {
+        Event::Key { key, physical_key, pressed: true, modifiers, .. } => {
+            own == Some(Binding::pressed(*key, *physical_key, *modifiers))
+        }
+        _ => false,
+    };
+    ctx.input(|input| input.events.iter().any(is_own))
 }
 
 /// Takes the key that is pressed for the command that waits for one.
@@ -210,19 +218,16 @@ fn rows(
     keymap: &mut Keymap,
     recording: &mut Option<Recording>,
 ) {
-    Grid::new(name).num_columns(2 * commands_in_row).spacing([16.0, 4.0]).show(ui, |ui| {
+    let grid = Grid::new(name).num_columns(2 * commands_in_row).min_col_width(136.0);
+    grid.spacing([16.0, 4.0]).show(ui, |ui| {
         for row in ids.chunks(commands_in_row) {
             for id in row {
-                ui.add_sized([190.0, 22.0], left_label(id.info().text)).on_hover_text(id.info().tooltip);
+                ui.label(id.info().text).on_hover_text(id.info().tooltip);
                 key_cell(ui, *id, keymap, recording);
             }
             ui.end_row();
         }
     });
-}
-
-fn left_label(text: &str) -> egui::Label {
-    egui::Label::new(text).halign(egui::Align::Min)
 }
 
 /// The command's key, to click and press another.

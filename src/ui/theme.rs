@@ -16,8 +16,8 @@ pub const PANEL_WIDTH: f32 = 272.0;
 pub const VIEWPORT_BACKGROUND: Color32 = Color32::from_rgb(24, 26, 31);
 
 /// For marks and lines in both themes, and for text on dark ground; text on panels takes [`accent`] and its like.
-pub const ACCENT: Color32 = Color32::from_rgb(74, 144, 245);
-pub const WARNING: Color32 = Color32::from_rgb(204, 132, 30);
+pub const ACCENT: Color32 = Color32::from_rgb(70, 140, 242);
+pub const WARNING: Color32 = Color32::from_rgb(196, 126, 26);
 pub const ERROR: Color32 = Color32::from_rgb(237, 90, 80);
 pub const GOOD: Color32 = Color32::from_rgb(60, 160, 100);
 
@@ -72,7 +72,7 @@ const LIGHT: Palette = Palette {
     bar: Color32::from_rgb(236, 238, 242),
     window: Color32::from_rgb(255, 255, 255),
     faint: Color32::from_rgb(239, 241, 245),
-    field: Color32::from_rgb(255, 255, 255),
+    field: Color32::from_rgb(238, 240, 245),
     widget: Color32::from_rgb(226, 229, 235),
     widget_hovered: Color32::from_rgb(214, 218, 227),
     widget_pressed: Color32::from_rgb(200, 206, 218),

@@ -34,7 +34,8 @@ fn harness_of(session: Session, size: [f32; 2], pixels_per_point: f32) -> (Harne
         ui::apply_theme(ui.ctx());
         let Chrome { session, state, busy, scenes, cancelled } = &mut *shared.borrow_mut();
         let mut commands = Vec::new();
-        if state.open.is_none() && session.question().is_none() && !ui.ctx().text_edit_focused() {
+        let is_elsewhere = ui.ctx().text_edit_focused() || egui::Popup::is_any_open(ui.ctx());
+        if state.open.is_none() && session.question().is_none() && !is_elsewhere {
             let keymap = &state.preferences.keymap;
             let pressed = ui.ctx().input_mut(|input| ui::pressed_commands(input, keymap));
             commands.extend(pressed.into_iter().map(|pressed| Command::Run(pressed.id)));
@@ -105,7 +106,6 @@ fn the_palette_finds_a_command_and_enter_runs_it() {
     press(&mut harness, Modifiers::COMMAND, Key::K);
     harness.get_by_label("Find a command");
     type_into(&mut harness, "rot");
-    harness.get_by_label("Rotate");
     press(&mut harness, Modifiers::NONE, Key::Enter);
     assert_eq!(chrome.borrow().session.tool(), pinpose::session::Tool::Rotate);
     assert!(harness.query_by_label("Find a command").is_none(), "it is closed");
@@ -165,8 +165,12 @@ fn the_sheet_closes_by_escape_but_a_recording_first() {
     let (mut harness, chrome) = harness(small_session());
     harness.run();
     press(&mut harness, Modifiers::NONE, Key::Questionmark);
+    harness.get_by_label("Search keys").focus();
+    harness.run();
+    type_into(&mut harness, "fit");
     harness.get_by_label("Key of Fit photo: 0").click();
     harness.run();
+    harness.get_by_label("Press a key…");
     press(&mut harness, Modifiers::NONE, Key::Escape);
     assert!(chrome.borrow().state.open.is_some(), "the recording alone ended");
     press(&mut harness, Modifiers::NONE, Key::Escape);

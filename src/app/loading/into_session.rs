@@ -1,0 +1,119 @@
+//! Files that were dropped, and complete loads on their way into the session.
+
+use std::sync::Arc;
+
+use super::{Arrival, Load, Origin};
+use crate::app::PinPose;
+use crate::platform::{self, FileBytes, Loaded, PageAnswer};
+use crate::scene::PhotoAsset;
+use crate::session::{Batch, Command, Notice, Opening};
+
+impl PinPose {
+    /// Files dropped on the window.
+    pub(in crate::app) fn take_dropped(&mut self, ctx: &egui::Context) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        if dropped.is_empty() {
+            return;
+        }
+        let arrive = self.loading.begin_reading();
+        platform::spawn(async move {
+            let mut files = Vec::new();
+            for file in dropped {
+                let name = file.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+                #[cfg(target_arch = "wasm32")]
+                let bytes = file.bytes_async().await;
+                #[cfg(not(target_arch = "wasm32"))]
+                let bytes = file.bytes();
+                files.push(match bytes {
+                    Ok(bytes) => Ok(FileBytes { name, bytes }),
+                    Err(error) => Err(format!("{name}: {error}")),
+                });
+            }
+            arrive(Arrival::of_files(files));
+        });
+    }
+
+    /// Gives complete loads to the session.
+    pub(in crate::app) fn take_loaded(&mut self) {
+        let (decoded, complete) = self.loading.poll(self.scenes.is_switching());
+        for (sha256, pixels) in decoded {
+            self.photos.insert(sha256, pixels);
+        }
+        for (sha256, pixels) in self.loading.take_thumbnails() {
+            self.ui_state.thumbnails.insert(&self.ctx, sha256, pixels.as_ref());
+        }
+        for mut load in complete {
+            if load.is_of(Origin::Workspace) && !self.make_room(&mut load) {
+                self.loading.loads.push(load);
+                continue;
+            }
+            load.sort();
+            let masks = self.take_masks(&mut load);
+            let restored = load.is_of(Origin::Storage);
+            let command = match load.opening.take() {
+                Some((document, _)) => Command::Open(Box::new(Opening {
+                    document,
+                    photos: load.batch.photos,
+                    meshes: load.batch.meshes,
+                    restored,
+                })),
+                None => Command::Import(Box::new(load.batch)),
+            };
+            if !matches!(&command, Command::Import(batch) if is_nothing(batch)) {
+                self.apply(command);
+            }
+            if !masks.is_empty() {
+                self.apply(Command::ImportMasks(masks));
+            }
+            if restored {
+                // What could not be read stays in storage: a change goes into a scene of its own.
+                self.scene_opened(load.problems.is_empty());
+            }
+            load.warnings.into_iter().for_each(|warning| self.notify(Notice::warning(warning)));
+            load.problems.iter().for_each(|problem| self.notify(Notice::error(problem.clone())));
+            if let Some(reply) = load.reply {
+                // Who asked may be gone.
+                let loaded = Loaded { files: load.files, problems: load.problems };
+                reply.send(Ok(PageAnswer::Loaded(loaded))).ok();
+            }
+        }
+    }
+
+    /// A workspace opens in a scene of its own: the open one is kept. False while that one is being saved.
+    fn make_room(&mut self, load: &mut Load) -> bool {
+        if self.session.scene().is_empty() {
+            return true;
+        }
+        if self.scenes.is_switching() {
+            return false;
+        }
+        if !load.has_asked_for_room {
+            load.has_asked_for_room = true;
+            self.new_scene();
+            return self.session.scene().is_empty();
+        }
+        // The open scene cannot be saved, which was said. It can still be brought back by undo.
+        true
+    }
+
+    /// The images of a load that are masks: all if they were picked as such, else those of the size of the photo that is
+    /// going to be shown. The others are photos.
+    fn take_masks(&self, load: &mut Load) -> Vec<Arc<PhotoAsset>> {
+        let likely = std::mem::take(&mut load.likely_masks);
+        if load.as_masks {
+            return likely;
+        }
+        let first_new = load.batch.photos.first().map(|photo| (photo.width, photo.height));
+        let shown = self.session.photo().map(|photo| (photo.asset.width, photo.asset.height));
+        let size = first_new.or(shown);
+        let (masks, photos) = likely.into_iter().partition(|image| size == Some((image.width, image.height)));
+        load.batch.photos.extend::<Vec<_>>(photos);
+        masks
+    }
+}
+
+/// A drop of masks alone brings nothing else.
+fn is_nothing(batch: &Batch) -> bool {
+    let Batch { photos, meshes, cameras, poses, .. } = batch;
+    photos.is_empty() && meshes.is_empty() && cameras.is_empty() && poses.is_empty()
+}
