@@ -171,6 +171,26 @@ fn a_pose_is_typed_as_angles_and_each_edit_is_one_undo_step() {
     assert_eq!(pose(&session), start);
 }
 
+/// A field shows two decimals; to look into it is no edit.
+#[test]
+fn a_field_that_is_left_as_it_was_changes_nothing() {
+    let mut session = small_session();
+    session.apply(Command::SetPoseFromText("1.23456789 2 777.123456789".to_owned()), NOW_MS).unwrap();
+    let (mut harness, session) = tall_harness(session);
+    harness.run();
+    click(&mut harness, "Set pose");
+    click(&mut harness, "Rotation as");
+    click(&mut harness, "Axis-angle");
+    let before = pose(&session);
+    for field in ["tx", "tz", "ax"] {
+        click(&mut harness, field);
+    }
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    assert_eq!(pose(&session), before);
+    assert_eq!(session.borrow().log().len(), 1);
+}
+
 #[test]
 fn a_dragged_number_is_one_undo_step() {
     let (mut harness, session) = tall_harness(small_session());
@@ -342,10 +362,31 @@ fn hundreds_of_photos_lay_out_only_what_is_seen() {
     let files: Vec<_> =
         (0..200).map(|i| flat_photo(&format!("row {i}.png"), 8 + i % 20, 8 + i / 20)).collect();
     drop_files(&mut session, &files, None);
-    let (mut harness, _) = tall_harness(session);
+    let (mut harness, session) = tall_harness(session);
     harness.run();
     let shown = harness.query_all_by_label_contains("More for ").count();
     assert!((5..30).contains(&shown), "{shown}");
+    assert!(harness.query_by_label("row 150.png").is_none());
+    let far = session.borrow().scene().photos[151].id;
+    session.borrow_mut().apply(Command::ShowPhoto(far), NOW_MS).unwrap();
+    harness.run();
+    harness.get_by_label("row 150.png");
+}
+
+#[test]
+fn what_is_in_the_panel_never_makes_it_wider() {
+    let (mut harness, _) = tall_harness(small_session());
+    harness.run();
+    let left = harness.get_by_label("Viewport").rect().left();
+    for section in ["Set pose", "Mesh", "Nudge", "Lens distortion"] {
+        click(&mut harness, section);
+    }
+    for form in ["Euler xyz", "Quaternion", "Axis-angle"] {
+        click(&mut harness, "Rotation as");
+        harness.get_all_by_label(form).last().unwrap().click();
+        harness.run();
+        assert_eq!(harness.get_by_label("Viewport").rect().left(), left);
+    }
 }
 
 #[test]
@@ -398,11 +439,11 @@ fn look_at_it() {
         let truth = format!("{CAMERA_JSON}\nbox <-> photo\n1 0 0 5\n0 1 0 6\n0 0 1 700\n0 0 0 1\n");
         drop_files(&mut session, &[text_file("truth.txt", &truth)], Some(PosesAs::Reference));
         for id in [
-            CommandId::SelectAll,
-            CommandId::LinkObjects,
             CommandId::NudgeRight,
             CommandId::PitchForward,
             CommandId::DuplicateObject,
+            CommandId::SelectAll,
+            CommandId::LinkObjects,
         ] {
             session.apply(Command::Run(id), NOW_MS).ok();
         }
@@ -424,12 +465,11 @@ fn look_at_it() {
         let (mut harness, _) = harness_of(session, [width, height], scale);
         harness.run();
         if name == "2x" {
-            for section in ["Set pose", "Mesh", "Nudge"] {
+            for section in ["Set pose", "Mesh", "Nudge", "Rotation as", "Euler xyz", "More for box"] {
                 harness.get_by_label(section).click();
                 harness.run();
             }
         }
-        harness.run();
         let image = harness.render().unwrap();
         std::fs::create_dir_all("/tmp/panels-look").unwrap();
         image.save(format!("/tmp/panels-look/{name}.png")).unwrap();

@@ -13,6 +13,9 @@ use crate::ui::theme;
 
 pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
     let objects = &session.scene().objects;
+    let selected = session.selected();
+    let is_new = std::mem::replace(&mut state.shown_object, selected) != selected;
+    let reveal = objects.iter().position(|object| is_new && Some(object.id) == selected);
     let mut asked = Vec::new();
     let import = |ui: &mut Ui| {
         if command_icon(ui, Icon::Plus, CommandId::ImportMeshes, session).clicked() {
@@ -23,7 +26,7 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
         if objects.is_empty() {
             super::number_field::note(ui, "Drop a mesh (PLY, OBJ, GLB)", true);
         }
-        list::rows(ui, List::Objects, objects.len(), |ui, index| {
+        list::rows(ui, List::Objects, objects.len(), reveal, |ui, index| {
             object_row(ui, session, index, &objects[index], state, commands);
         });
         selected_opacity(ui, session, commands);
