@@ -11,16 +11,16 @@ use pinpose::math::Pose;
 use pinpose::session::{Command, CommandId, Session};
 use pinpose::ui::{self, Saving, Surroundings, UiState};
 
-use crate::support::{CAMERA_JSON, NOW_MS, box_mesh, drop_files, flat_photo, small_session, text_file};
+use crate::support::{CAMERA_JSON, NOW_MS, drop_files, flat_photo, small_session, text_file};
 
 /// A session behind the interface; commands are applied as the program does it.
 fn harness(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>) {
-    harness_of(session, [1024.0, 720.0], 1.0)
+    harness_of(session, [1024.0, 720.0])
 }
 
 /// High enough for every section at once.
 fn tall_harness(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>) {
-    harness_of(session, [1024.0, 1800.0], 1.0)
+    harness_of(session, [1024.0, 1800.0])
 }
 
 fn click(harness: &mut Harness<'static>, label: &str) {
@@ -41,11 +41,11 @@ fn pose(session: &Rc<RefCell<Session>>) -> Pose {
     session.borrow().selected_annotation().unwrap().2.camera_from_object
 }
 
-fn harness_of(session: Session, size: [f32; 2], scale: f32) -> (Harness<'static>, Rc<RefCell<Session>>) {
+fn harness_of(session: Session, size: [f32; 2]) -> (Harness<'static>, Rc<RefCell<Session>>) {
     let session = Rc::new(RefCell::new(session));
     let shared = session.clone();
     let mut state = UiState::default();
-    let harness = Harness::builder().with_size(size).with_pixels_per_point(scale).build_ui(move |ui| {
+    let harness = Harness::builder().with_size(size).build_ui(move |ui| {
         ui::apply_theme(ui.ctx());
         let around = Surroundings {
             view: &PhotoView::default(),
@@ -429,49 +429,4 @@ fn nudges_and_their_steps_are_set_by_buttons() {
     assert!((pose(&session).angle_to(&start).to_degrees() - 5.0).abs() < 1e-9);
     click(&mut harness, "Object");
     assert_eq!(session.borrow().nudge_settings().frame, pinpose::session::NudgeFrame::Object);
-}
-
-#[test]
-fn look_at_it() {
-    for (name, scale, width, height) in [("1x", 1.0, 1024.0, 640.0), ("2x", 2.0, 1024.0, 1500.0)] {
-        let mut session = small_session();
-        drop_files(&mut session, &[box_mesh("other.obj"), flat_photo("second photo.png", 320, 240)], None);
-        let truth = format!("{CAMERA_JSON}\nbox <-> photo\n1 0 0 5\n0 1 0 6\n0 0 1 700\n0 0 0 1\n");
-        drop_files(&mut session, &[text_file("truth.txt", &truth)], Some(PosesAs::Reference));
-        for id in [
-            CommandId::NudgeRight,
-            CommandId::PitchForward,
-            CommandId::DuplicateObject,
-            CommandId::SelectAll,
-            CommandId::LinkObjects,
-        ] {
-            session.apply(Command::Run(id), NOW_MS).ok();
-        }
-        let pose = session
-            .selected_annotation()
-            .unwrap()
-            .2
-            .camera_from_object
-            .translated(glam::DVec3::new(-63.0, 2.0, 12.5));
-        session
-            .apply(
-                Command::SetPoseFromText(pinpose::formats::write_pose_text(
-                    &pose,
-                    pinpose::formats::PoseText::Matrix,
-                )),
-                NOW_MS + 5e6,
-            )
-            .unwrap();
-        let (mut harness, _) = harness_of(session, [width, height], scale);
-        harness.run();
-        if name == "2x" {
-            for section in ["Set pose", "Mesh", "Nudge", "Rotation as", "Euler xyz", "More for box"] {
-                harness.get_by_label(section).click();
-                harness.run();
-            }
-        }
-        let image = harness.render().unwrap();
-        std::fs::create_dir_all("/tmp/panels-look").unwrap();
-        image.save(format!("/tmp/panels-look/{name}.png")).unwrap();
-    }
 }

@@ -45,7 +45,7 @@ impl NumberField<'_> {
                 let is_edited = ui.memory(|memory| memory.has_focus(id));
                 let format = move |value: f64, decimals: std::ops::RangeInclusive<usize>| {
                     let shown = egui::emath::format_with_decimals_in_range(value, decimals);
-                    if is_edited { (value + 0.0).to_string() } else { shown }
+                    if is_edited { (value + 0.0).to_string() } else { without_negative_zero(shown) }
                 };
                 let field = DragValue::new(value)
                     .custom_formatter(format)
@@ -71,6 +71,12 @@ impl NumberField<'_> {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(self.name));
         if self.tooltip.is_empty() { response } else { response.on_hover_text(self.tooltip) }
     }
+}
+
+/// "-0.00" is 0: what is left of a number after rounding has no sign.
+fn without_negative_zero(shown: String) -> String {
+    let digits = shown.trim_start_matches(['-', '−']);
+    if digits.chars().all(|c| matches!(c, '0' | '.')) { digits.to_owned() } else { shown }
 }
 
 /// Selects so many characters of a text field from its start.

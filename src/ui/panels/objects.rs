@@ -97,10 +97,6 @@ fn object_name(
     if !placed {
         tooltip += "\nNot in this photo";
     }
-    if is_first_of_several {
-        let bar = ui.max_rect().with_max_x(ui.max_rect().left() + 2.0).translate(Vec2::new(-4.0, 0.0));
-        ui.painter().rect_filled(bar, 1.0, ui.visuals().hyperlink_color);
-    }
     let look = NameLook {
         name: &object.name,
         selected: session.is_selected(object.id),
@@ -108,7 +104,13 @@ fn object_name(
         room: if object.link.is_some() { 98.0 } else { 78.0 },
         tooltip: &tooltip,
     };
-    list::name(ui, key, look, rename)
+    let used = list::name(ui, key, look, rename);
+    // Of several that are selected, keys and numbers act on this one.
+    if let Some(response) = used.response.as_ref().filter(|_| is_first_of_several) {
+        let bar = response.rect.with_max_x(response.rect.left() + 3.0).shrink2(Vec2::new(0.0, 3.0));
+        ui.painter().rect_filled(bar, 1.5, ui.visuals().strong_text_color());
+    }
+    used
 }
 
 fn row_buttons(ui: &mut Ui, session: &Session, object: &Object, placed: bool, asked: &mut Vec<Command>) {
