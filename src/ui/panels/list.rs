@@ -5,11 +5,15 @@ use egui::{
     Sense, Slider, TextEdit, Ui, UiBuilder, Vec2,
 };
 
+use super::number_field::select_characters;
 use crate::scene::{Rgb, object_color};
 use crate::ui::icons::{Icon, icon_button};
 use crate::ui::theme;
 
 pub const ROW_HEIGHT: f32 = 24.0;
+
+/// With the gap to the next.
+const ROW_STRIDE: f32 = ROW_HEIGHT + 1.0;
 
 /// So many rows are shown at once; a longer list scrolls by itself, so that what is under it stays near.
 const MOST_ROWS: usize = 9;
@@ -46,20 +50,36 @@ impl Rename {
 }
 
 /// Lays out the rows that can be seen.
-pub fn rows(ui: &mut Ui, list: List, count: usize, mut row: impl FnMut(&mut Ui, usize)) {
+///
+/// `reveal`: a row that is to come into sight, if it is out of it.
+pub fn rows(
+    ui: &mut Ui,
+    list: List,
+    count: usize,
+    reveal: Option<usize>,
+    mut row: impl FnMut(&mut Ui, usize),
+) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         if count <= MOST_ROWS {
             (0..count).for_each(|index| row(ui, index));
             return;
         }
-        let height = MOST_ROWS as f32 * (ROW_HEIGHT + 1.0);
-        egui::ScrollArea::vertical()
+        let height = MOST_ROWS as f32 * ROW_STRIDE;
+        let id = egui::Id::unique(("list offset", list));
+        let offset = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or_default();
+        let mut area = egui::ScrollArea::vertical()
             .id_salt(("list", list))
             .max_height(height)
             .min_scrolled_height(height)
-            .auto_shrink([false, true])
-            .show_rows(ui, ROW_HEIGHT, count, |ui, visible| visible.for_each(|index| row(ui, index)));
+            .auto_shrink([false, true]);
+        let is_out_of_sight = |top: &f32| *top < offset || *top + ROW_STRIDE > offset + height;
+        if let Some(top) = reveal.map(|index| index as f32 * ROW_STRIDE).filter(is_out_of_sight) {
+            area = area.vertical_scroll_offset((top - height / 2.0).max(0.0));
+        }
+        let shown =
+            area.show_rows(ui, ROW_HEIGHT, count, |ui, visible| visible.for_each(|index| row(ui, index)));
+        ui.data_mut(|data| data.insert_temp(id, shown.state.clamped_offset().y));
     });
 }
 
@@ -136,7 +156,7 @@ fn edit_name(ui: &mut Ui, width: f32, present: &str, rename: &mut Option<Rename>
     if !state.has_focus {
         state.has_focus = true;
         response.request_focus();
-        select_all(ui, &response, state.text.chars().count());
+        select_characters(ui, &response, state.text.chars().count());
         response.scroll_to_me(None);
     }
     if !response.lost_focus() {
@@ -145,13 +165,6 @@ fn edit_name(ui: &mut Ui, width: f32, present: &str, rename: &mut Option<Rename>
     let is_dropped = ui.input(|input| input.key_pressed(Key::Escape));
     let text = rename.take().map(|rename| rename.text.trim().to_owned())?;
     (!is_dropped && !text.is_empty() && text != present).then_some(text)
-}
-
-fn select_all(ui: &Ui, response: &Response, length: usize) {
-    use egui::text::{CCursor, CCursorRange};
-    let mut state = egui::text_edit::TextEditState::load(ui.ctx(), response.id).unwrap_or_default();
-    state.cursor.set_char_range(Some(CCursorRange::two(CCursor::new(0), CCursor::new(length))));
-    state.store(ui.ctx(), response.id);
 }
 
 /// A row's menu: by its dots, and by a right click on its name.

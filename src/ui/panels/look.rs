@@ -115,7 +115,10 @@ fn photo_adjustment(ui: &mut Ui, look: &mut Look) {
         if response.changed() {
             *value = percent / 100.0;
         }
-        if response.double_clicked() {
+        let rail = response.rect.with_max_x(response.rect.left() + ui.spacing().slider_width);
+        let double_clicked =
+            ui.input(|input| input.pointer.button_double_clicked(egui::PointerButton::Primary));
+        if double_clicked && ui.rect_contains_pointer(rail) {
             *value = 0.0;
         }
         response.on_hover_text("Of the photo, for the eye alone; double click: as it is");

@@ -22,7 +22,7 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
         }
     };
     section(ui, "Masks", true, import, |ui| {
-        list::rows(ui, List::Masks, masks.len(), |ui, row| {
+        list::rows(ui, List::Masks, masks.len(), None, |ui, row| {
             let (position, mask) = masks[row];
             mask_row(ui, session, (row, position, &masks), mask, state, commands);
         });

@@ -19,7 +19,7 @@ mod section;
 
 use egui::{Frame, Panel, Ui, UiBuilder};
 
-use crate::scene::ObjectId;
+use crate::scene::{ObjectId, PhotoId};
 use crate::session::{Command, Session};
 
 /// How wide the panel may be dragged.
@@ -27,7 +27,9 @@ pub const WIDTHS: std::ops::RangeInclusive<f32> = 240.0..=420.0;
 
 /// What of the output is always in sight: its title and a row of the matrix.
 const LEAST_OUTPUT_HEIGHT: f32 = 60.0;
-const FIRST_OUTPUT_HEIGHT: f32 = 190.0;
+/// At first: the matrix and a few lines of the history, less on a low screen.
+const FIRST_OUTPUT: f32 = 0.27;
+const FIRST_OUTPUT_HEIGHTS: (f32, f32) = (150.0, 230.0);
 /// Of the panel, for the output at most.
 const MOST_OUTPUT: f32 = 0.7;
 
@@ -38,6 +40,9 @@ pub struct PanelState {
     pose: pose_fields::PoseForm,
     mesh: mesh_frame::MeshForm,
     rename: Option<list::Rename>,
+    /// As of the last frame: another one comes into sight in its list.
+    shown_photo: Option<PhotoId>,
+    shown_object: Option<ObjectId>,
     /// Where a range of objects begins that is chosen with Shift.
     range_anchor: Option<ObjectId>,
     errors: references::ErrorCache,
@@ -66,14 +71,13 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
 
 fn parts(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
     let most = (ui.available_height() * MOST_OUTPUT).max(LEAST_OUTPUT_HEIGHT);
+    let (low, high) = FIRST_OUTPUT_HEIGHTS;
+    let first = (ui.available_height() * FIRST_OUTPUT).clamp(low, high).min(most);
     let frame = Frame::NONE.inner_margin(egui::Margin { left: 0, right: 8, top: 4, bottom: 4 });
     let panel = if state.output.folded {
         Panel::bottom("output folded").resizable(false)
     } else {
-        Panel::bottom("output")
-            .resizable(true)
-            .default_size(FIRST_OUTPUT_HEIGHT)
-            .size_range(LEAST_OUTPUT_HEIGHT..=most)
+        Panel::bottom("output").resizable(true).default_size(first).size_range(LEAST_OUTPUT_HEIGHT..=most)
     };
     panel.frame(frame).show(ui, |ui| output::draw(ui, session, &mut state.output, commands));
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -13,6 +13,9 @@ use crate::ui::theme;
 
 pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
     let objects = &session.scene().objects;
+    let selected = session.selected();
+    let is_new = std::mem::replace(&mut state.shown_object, selected) != selected;
+    let reveal = objects.iter().position(|object| is_new && Some(object.id) == selected);
     let mut asked = Vec::new();
     let import = |ui: &mut Ui| {
         if command_icon(ui, Icon::Plus, CommandId::ImportMeshes, session).clicked() {
@@ -23,7 +26,7 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
         if objects.is_empty() {
             super::number_field::note(ui, "Drop a mesh (PLY, OBJ, GLB)", true);
         }
-        list::rows(ui, List::Objects, objects.len(), |ui, index| {
+        list::rows(ui, List::Objects, objects.len(), reveal, |ui, index| {
             object_row(ui, session, index, &objects[index], state, commands);
         });
         selected_opacity(ui, session, commands);
@@ -94,10 +97,6 @@ fn object_name(
     if !placed {
         tooltip += "\nNot in this photo";
     }
-    if is_first_of_several {
-        let bar = ui.max_rect().with_max_x(ui.max_rect().left() + 2.0).translate(Vec2::new(-4.0, 0.0));
-        ui.painter().rect_filled(bar, 1.0, ui.visuals().hyperlink_color);
-    }
     let look = NameLook {
         name: &object.name,
         selected: session.is_selected(object.id),
@@ -105,7 +104,13 @@ fn object_name(
         room: if object.link.is_some() { 98.0 } else { 78.0 },
         tooltip: &tooltip,
     };
-    list::name(ui, key, look, rename)
+    let used = list::name(ui, key, look, rename);
+    // Of several that are selected, keys and numbers act on this one.
+    if let Some(response) = used.response.as_ref().filter(|_| is_first_of_several) {
+        let bar = response.rect.with_max_x(response.rect.left() + 3.0).shrink2(Vec2::new(0.0, 3.0));
+        ui.painter().rect_filled(bar, 1.5, ui.visuals().strong_text_color());
+    }
+    used
 }
 
 fn row_buttons(ui: &mut Ui, session: &Session, object: &Object, placed: bool, asked: &mut Vec<Command>) {

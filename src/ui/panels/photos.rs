@@ -13,6 +13,9 @@ use crate::ui::theme;
 
 pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
     let photos = &session.scene().photos;
+    let shown = session.photo().map(|photo| photo.id);
+    let is_new = std::mem::replace(&mut state.shown_photo, shown) != shown;
+    let reveal = photos.iter().position(|photo| is_new && Some(photo.id) == shown);
     let mut asked = Vec::new();
     let import = |ui: &mut Ui| {
         if command_icon(ui, Icon::Plus, CommandId::ImportPhotos, session).clicked() {
@@ -23,7 +26,7 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
         if photos.is_empty() {
             super::number_field::note(ui, "Drop a photo (PNG, JPEG)", true);
         }
-        list::rows(ui, List::Photos, photos.len(), |ui, index| {
+        list::rows(ui, List::Photos, photos.len(), reveal, |ui, index| {
             photo_row(ui, session, index, &photos[index], state, commands);
         });
     });

@@ -18,7 +18,7 @@ pub struct PoseForm {
     numbers: Option<Numbers>,
     /// Text under way, and the pose's place that it is for.
     text: Option<((PhotoId, ObjectId), String)>,
-    refused: Option<String>,
+    refused: Option<((PhotoId, ObjectId), String)>,
     /// A field is being dragged: one undo step.
     dragging: bool,
 }
@@ -77,7 +77,7 @@ fn body(
     if let Some(reason) = reason {
         note(ui, reason, true);
     }
-    if let Some(refused) = &form.refused {
+    if let Some((_, refused)) = form.refused.as_ref().filter(|(of, _)| *of == target) {
         refusal(ui, refused);
     }
 }
@@ -149,7 +149,10 @@ fn number_fields(
                 form.numbers = Some(Numbers { form: form.form, pose: wanted, rotation });
                 commands.extend(set_command(session, target, wanted, touched, form.dragging));
             }
-            None => form.refused = Some("A quaternion of zeros is no rotation: the pose is kept.".to_owned()),
+            None => {
+                let text = "A quaternion of zeros is no rotation: the pose is kept.";
+                form.refused = Some((target, text.to_owned()));
+            }
         }
     }
     if touched.drag_stopped && form.dragging {
@@ -178,13 +181,13 @@ fn rotation_fields(ui: &mut Ui, form: RotationForm, rotation: &mut [f64; 4]) -> 
     let columns = if names.len() == 4 { 2 } else { 3 };
     let width = column_width(ui, columns);
     let mut touched = Touched::default();
-    let (unit, speed, decimals) = if form.is_in_degrees() { ("°", 0.2, 3) } else { ("", 0.002, 6) };
+    let (unit, speed, decimals) = if form.is_in_degrees() { ("°", 0.2, 2) } else { ("", 0.002, 5) };
     for (row, names) in names.chunks(columns).enumerate() {
         ui.horizontal(|ui| {
             for (column, name) in names.iter().enumerate() {
                 let tooltip = RotationForm::ALL[form as usize].2;
                 let field = NumberField { label: name, name, unit, tooltip, speed, decimals, live: false };
-                let response = field.show(ui, width, 21.0, &mut rotation[row * columns + column]);
+                let response = field.show(ui, width, 17.0, &mut rotation[row * columns + column]);
                 touched = touched.and(Touched::of(&response));
             }
         });
@@ -199,10 +202,9 @@ fn translation_fields(ui: &mut Ui, translation_mm: &mut DVec3) -> Touched {
     ui.horizontal(|ui| {
         for (axis, name) in ["tx", "ty", "tz"].into_iter().enumerate() {
             let tooltip = meanings[axis];
-            // 3 decimals are a micrometre.
             let field =
-                NumberField { label: name, name, unit: "", tooltip, speed: 0.5, decimals: 3, live: false };
-            let response = field.show(ui, width, 21.0, &mut translation_mm[axis]);
+                NumberField { label: name, name, unit: "", tooltip, speed: 0.5, decimals: 2, live: false };
+            let response = field.show(ui, width, 17.0, &mut translation_mm[axis]);
             touched = touched.and(Touched::of(&response));
         }
     });

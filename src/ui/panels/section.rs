@@ -8,7 +8,7 @@ const HEADER_HEIGHT: f32 = 24.0;
 /// A quiet caption over several sections.
 pub fn caption(ui: &mut Ui, text: &str) {
     ui.add_space(5.0);
-    ui.label(RichText::new(text.to_uppercase()).small().strong().weak());
+    ui.label(RichText::new(text.to_uppercase()).small().weak());
 }
 
 /// A title that folds what is under it; the buttons at its right end stay.
@@ -37,6 +37,7 @@ pub fn section(
     response.on_hover_text(tooltip);
     state.show_body_unindented(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::new(6.0, 5.0);
+        ui.spacing_mut().interact_size.y = super::number_field::FIELD_HEIGHT;
         body(ui);
         ui.add_space(2.0);
     });
