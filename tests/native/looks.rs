@@ -517,3 +517,40 @@ fn the_scene_picture_has_the_photo_its_camera_and_axes() {
     assert_eq!((lines[0].from, lines[0].to), (DVec3::ZERO, corner));
     assert_eq!((picture.camera, picture.eye_from_camera), (view.eye, view.eye_from_camera));
 }
+
+/// A mesh of very many triangles is drawn coarser while it moves, near enough for the eye, and exactly at rest.
+#[test]
+fn fine_meshes_are_coarser_only_while_they_move() {
+    let Some(mut renderer) = renderer() else { return };
+    let side = 400_u32;
+    let point = |i: u32| {
+        let (x, y) = (i % (side + 1), i / (side + 1));
+        Vec3::new(x as f32, y as f32, 0.0) * (80.0 / side as f32) - Vec3::new(40.0, 40.0, 0.0)
+    };
+    let corners = (0..side * side).map(|i| i / side * (side + 1) + i % side);
+    let data = MeshData {
+        positions_mm: (0..(side + 1) * (side + 1)).map(point).collect(),
+        triangles: corners
+            .flat_map(|a| {
+                let [b, c, d] = [a + 1, a + side + 1, a + side + 2];
+                [[a, b, c], [b, d, c]]
+            })
+            .collect(),
+        ..MeshData::default()
+    };
+    let mut picture = box_picture(OverlayMode::Shaded);
+    picture.items[0].mesh = asset(Mesh::new(data).unwrap());
+    let mut draw_counting = |in_motion| {
+        picture.in_motion = in_motion;
+        renderer.usage.reset();
+        let pixels = draw(&mut renderer, &picture);
+        (pixels, renderer.usage.triangles.get())
+    };
+    let (at_rest, all_triangles) = draw_counting(false);
+    let (moving, fewer_triangles) = draw_counting(true);
+    assert!(all_triangles > 320_000 && fewer_triangles < all_triangles / 5, "{fewer_triangles}");
+    // The coarse copy's border is within a cell, half a millimetre, of the mesh's: a pixel at this distance.
+    let (rest_count, moving_count) = (lit_pixels(&at_rest), lit_pixels(&moving));
+    assert!(rest_count.abs_diff(moving_count) < rest_count / 25, "{rest_count} and {moving_count} pixels");
+    assert_eq!(draw_counting(false).0, at_rest);
+}
