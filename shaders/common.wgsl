@@ -1,7 +1,7 @@
-// What every pass knows: the camera, the part of the photo that fills the target, and the target.
+// What every pass knows: the camera, the part of its image that fills the target, the target, and how things are shown.
 
 struct Frame {
-    clip_from_camera: mat4x4<f32>,
+    clip_from_eye: mat4x4<f32>,
     // The part of the `image` frame that fills the target: min x, min y, width, height, in photo pixels.
     image_rect: vec4<f32>,
     // Target pixels: the corner in the framebuffer, and the size.
@@ -17,6 +17,51 @@ struct Frame {
     // Half the outline's width in target pixels (0: no outline), the same for the selected object, and for references
     // (0: there are none), the length of their dashes
     outline: vec4<f32>,
+    // Target pixels: min x, min y, max x, max y of where outlines can be
+    outlined: vec4<f32>,
+    // Brightness, factors of contrast and saturation, 1 if any of them changes anything
+    adjustment: vec4<f32>,
+    // 1 if there is an overlay, where the wipe is in target pixels, half the width of its line (0: no wipe), 1 for the
+    // difference in place of the overlay
+    shown: vec4<f32>,
+    // 1 if there are masks, 1 for outlines of what is hidden, 1 for a free view, the mode (Look's order)
+    more: vec4<f32>,
+    // The nearest depth in mm, 1 / the range of depths, the width of mesh edges in target pixels, 0
+    lines: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+
+// Brown-Conrady, applied to the vertices; the same function as `Distortion::distort`.
+fn distort(position_eye: vec3<f32>) -> vec3<f32> {
+    // A point behind the camera is clipped anyway.
+    let z = max(position_eye.z, 1e-6);
+    let p = position_eye.xy / z;
+    let r2 = min(dot(p, p), frame.distortion_more.y);
+    let k = frame.distortion;
+    let radial = 1.0 + r2 * (k.x + r2 * (k.y + r2 * frame.distortion_more.x));
+    let tangential = vec2<f32>(
+        2.0 * k.z * p.x * p.y + k.w * (r2 + 2.0 * p.x * p.x),
+        k.z * (r2 + 2.0 * p.y * p.y) + 2.0 * k.w * p.x * p.y,
+    );
+    return vec3<f32>((p * radial + tangential) * z, position_eye.z);
+}
+
+fn clip_position(position_eye: vec3<f32>) -> vec4<f32> {
+    var seen = position_eye;
+    if (frame.distortion_more.z > 0.5) {
+        seen = distort(position_eye);
+    }
+    return frame.clip_from_eye * vec4<f32>(seen, 1.0);
+}
+
+// The photo's colours as the eye wants them. Where nothing is changed, nothing is computed: the bytes stay.
+fn adjusted(color: vec3<f32>) -> vec3<f32> {
+    if (frame.adjustment.w < 0.5) {
+        return color;
+    }
+    let gray = dot(color, vec3<f32>(0.299, 0.587, 0.114));
+    let saturated = gray + (color - gray) * frame.adjustment.z;
+    let contrasted = (saturated - 0.5) * frame.adjustment.y + 0.5;
+    return clamp(contrasted + frame.adjustment.x, vec3<f32>(0.0), vec3<f32>(1.0));
+}

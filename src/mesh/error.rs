@@ -62,4 +62,8 @@ pub enum MeshError {
     IndexOutOfRange { triangle: usize, index: u32, vertices: usize },
     #[error("{count} {attribute} for {vertices} vertices, expected one each")]
     AttributeCount { attribute: &'static str, count: usize, vertices: usize },
+    #[error("{count} {attribute} for {triangles} triangles, expected one each")]
+    TriangleAttributeCount { attribute: &'static str, count: usize, triangles: usize },
+    #[error("{what}")]
+    BadPaint { what: &'static str },
 }

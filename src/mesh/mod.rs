@@ -3,11 +3,14 @@
 //! This room knows nothing of photos, poses in a scene, or the GPU. Nothing here reads a file: loaders take bytes.
 
 mod bvh;
+mod edges;
 mod error;
 mod gltf;
 mod load;
 mod normals;
 mod obj;
+mod paint;
+mod painted;
 mod ply;
 mod ray_cast;
 #[cfg(test)]
@@ -20,9 +23,11 @@ use glam::{DAffine3, DVec3, Vec3};
 use crate::math::{BoundingSphere, Bounds};
 
 pub use bvh::Bvh;
+pub use edges::{MeshEdges, mesh_edges};
 pub use error::{Format, MeshError, Place};
 pub use load::{LoadedMesh, load};
-pub use normals::{ShadingMesh, ShadingVertex, shading_vertices};
+pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};
+pub use paint::{Material, Paint};
 pub use ray_cast::RayHit;
 
 /// A mesh with more triangles, or more vertices, than this is refused: beyond it a browser tab runs out of memory.
@@ -41,6 +46,8 @@ pub struct MeshData {
     pub normals: Option<Vec<Vec3>>,
     /// One per vertex: red, green, blue in sRGB, and alpha.
     pub colors: Option<Vec<[u8; 4]>>,
+    /// Materials and textures.
+    pub paint: Option<Paint>,
 }
 
 /// A triangle mesh in the `object` frame, in millimetres, that everything above can draw and measure without checking.
@@ -65,6 +72,8 @@ impl Mesh {
         check_counts(&data)?;
         check_positions(&data.positions_mm)?;
         let is_referenced = referenced(&data)?;
+        let triangles = data.triangles.len();
+        data.paint = data.paint.map(|paint| paint.checked(triangles)).transpose()?;
         data.normals = data.normals.and_then(|normals| usable_normals(normals, &is_referenced));
 
         let drawn_positions: Vec<Vec3> = data
@@ -104,6 +113,16 @@ impl Mesh {
         self.data.colors.as_deref()
     }
 
+    /// Materials and textures, if the file has any.
+    pub fn paint(&self) -> Option<&Paint> {
+        self.data.paint.as_ref()
+    }
+
+    /// Whether the file says of what colour the surface is; if not, it is drawn in a colour of the viewer's choice.
+    pub fn has_colors(&self) -> bool {
+        self.data.colors.is_some() || self.paint().is_some_and(Paint::has_colors)
+    }
+
     /// The box around what is drawn.
     pub fn bounds(&self) -> Bounds {
         self.bounds
@@ -140,6 +159,7 @@ impl Mesh {
             for [_, b, c] in &mut data.triangles {
                 std::mem::swap(b, c);
             }
+            data.paint.iter_mut().for_each(Paint::mirror);
         }
         Self::new(data)
     }

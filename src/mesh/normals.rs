@@ -1,9 +1,12 @@
 //! Vertices as the GPU draws them: with a normal and a colour each, split where the surface has an edge.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use super::Mesh;
+use super::painted::painted;
 use super::weld::weld;
 
 /// Faces that meet at a larger angle than this are shaded as two surfaces.
@@ -11,32 +14,58 @@ const CREASE_ANGLE_DEG: f32 = 40.0;
 
 const WHITE: [u8; 4] = [255; 4];
 
-/// A vertex in the `object` frame: millimetres, unit normal, sRGB and alpha.
+/// A vertex in the `object` frame: millimetres, unit normal.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadingVertex {
     pub position: [f32; 3],
     pub normal: [f32; 3],
+    /// sRGB and alpha: the vertex colour times that of the material, to be multiplied by the texture's.
     pub color: [u8; 4],
+    /// On the group's texture; (0, 0) is its top left corner. Zero where there is none.
+    pub uv: [f32; 2],
 }
 
-/// Triangles for the GPU, three indices each, in the order of [`Mesh::triangles`].
+/// Triangles for the GPU, three indices each: group by group, and within a group in the order of [`Mesh::triangles`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShadingMesh {
     pub vertices: Vec<ShadingVertex>,
     pub indices: Vec<u32>,
+    /// What is drawn at once: one group per texture that is shown, and one for all triangles without.
+    pub groups: Vec<ShadingGroup>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShadingGroup {
+    /// An index into the textures of [`Mesh::paint`].
+    pub texture: Option<u32>,
+    /// Within [`ShadingMesh::indices`].
+    pub indices: Range<u32>,
 }
 
 /// The mesh with the file's normals, or else with computed ones: the mean over the faces around a place, weighted by the
 /// angle at it, within each part of the fan that no crease cuts off.
+///
+/// Vertices are split further where a texture has a seam or the material changes.
 pub fn shading_vertices(mesh: &Mesh) -> ShadingMesh {
-    match mesh.normals() {
+    let plain = match mesh.normals() {
         Some(normals) => {
             let vertices =
                 (0..normals.len()).map(|vertex| shading_vertex(mesh, vertex, normals[vertex])).collect();
-            ShadingMesh { vertices, indices: mesh.triangles().as_flattened().to_vec() }
+            ShadingMesh::of_one_group(vertices, mesh.triangles().as_flattened().to_vec())
         }
         None => with_computed_normals(mesh),
+    };
+    match mesh.paint() {
+        Some(paint) => painted(plain, paint),
+        None => plain,
+    }
+}
+
+impl ShadingMesh {
+    fn of_one_group(vertices: Vec<ShadingVertex>, indices: Vec<u32>) -> Self {
+        let groups = vec![ShadingGroup { texture: None, indices: 0..indices.len() as u32 }];
+        Self { vertices, indices, groups }
     }
 }
 
@@ -45,6 +74,7 @@ fn shading_vertex(mesh: &Mesh, vertex: usize, normal: Vec3) -> ShadingVertex {
         position: mesh.positions_mm()[vertex].to_array(),
         normal: normal.to_array(),
         color: mesh.colors().map_or(WHITE, |colors| colors[vertex]),
+        uv: [0.0; 2],
     }
 }
 
@@ -53,10 +83,10 @@ fn with_computed_normals(mesh: &Mesh) -> ShadingMesh {
     let fans = CornersByPlace::new(mesh, &place_of_vertex, place_count);
     let face_normals: Vec<Vec3> =
         mesh.triangles().iter().map(|&triangle| face_normal(mesh, triangle)).collect();
-    let mut shading = ShadingMesh {
-        vertices: Vec::with_capacity(mesh.positions_mm().len()),
-        indices: vec![0; mesh.triangles().len() * 3],
-    };
+    let mut shading = ShadingMesh::of_one_group(
+        Vec::with_capacity(mesh.positions_mm().len()),
+        vec![0; mesh.triangles().len() * 3],
+    );
     let mut fan = Fan::default();
     for place in 0..place_count {
         fan.gather(mesh, &place_of_vertex, &face_normals, fans.corners_at(place));

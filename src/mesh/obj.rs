@@ -204,7 +204,13 @@ impl Reader {
             ));
         }
         let colors = self.srgb_colors();
-        let data = MeshData { positions_mm: self.positions, triangles: self.triangles, normals, colors };
+        let data = MeshData {
+            positions_mm: self.positions,
+            triangles: self.triangles,
+            normals,
+            colors,
+            paint: None,
+        };
         Ok(Parsed { data, warnings })
     }
 

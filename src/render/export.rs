@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Picture, picture_of};
+use super::{Picture, Subject, picture_of};
 use crate::photo::{Pixels, png_gray8, png_gray16};
 use crate::raster::{PixelRegion, RasterImage, RasterItem, rasterize};
 use crate::scene::{ObjectId, PhotoId, Scene};
@@ -49,10 +49,10 @@ pub fn export_picture(
     pixels: Option<Arc<Pixels>>,
     object: Option<ObjectId>,
 ) -> Option<Picture> {
-    let Some(object) = object else { return picture_of(scene, photo, pixels, None) };
+    let Some(object) = object else { return picture_of(&Subject::new(scene, photo, pixels)) };
     let mut alone = scene.clone();
     alone.objects.retain(|candidate| candidate.id == object);
-    let mut picture = picture_of(&alone, photo, pixels, None)?;
+    let mut picture = picture_of(&Subject::new(&alone, photo, pixels))?;
     picture.ghosts.clear();
     (!picture.items.is_empty()).then_some(picture)
 }

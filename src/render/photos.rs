@@ -5,30 +5,34 @@ use std::sync::Arc;
 use super::{Gpu, Usage};
 use crate::photo::{Pixels, half_size};
 
-/// Textures that are kept; the next and the previous photo are a key press away.
-const KEPT: usize = 3;
-
-/// The photos that were drawn last, newest first.
-#[derive(Debug, Default)]
+/// The photos that were drawn last, newest first; or their masks.
+#[derive(Debug)]
 pub struct PhotoTextures {
     kept: Vec<(Arc<Pixels>, wgpu::TextureView)>,
+    most: usize,
 }
 
 impl PhotoTextures {
+    /// Keeps so many textures.
+    pub fn keeping(most: usize) -> Self {
+        Self { kept: Vec::new(), most }
+    }
+
     /// The texture of a photo, uploaded if it is not there yet.
     pub fn view(&mut self, gpu: &Gpu, usage: &Usage, pixels: &Arc<Pixels>) -> &wgpu::TextureView {
         let position = self.kept.iter().position(|(kept, _)| Arc::ptr_eq(kept, pixels));
         let entry = match position {
             Some(position) => self.kept.remove(position),
-            None => (pixels.clone(), upload(gpu, usage, pixels)),
+            None => (pixels.clone(), upload_texture(gpu, usage, pixels)),
         };
-        self.kept.truncate(KEPT - 1);
+        self.kept.truncate(self.most - 1);
         self.kept.insert(0, entry);
         &self.kept[0].1
     }
 }
 
-fn upload(gpu: &Gpu, usage: &Usage, pixels: &Pixels) -> wgpu::TextureView {
+/// A texture with all its smaller copies.
+pub fn upload_texture(gpu: &Gpu, usage: &Usage, pixels: &Pixels) -> wgpu::TextureView {
     // A photo larger than the device's textures is shown from its first smaller copy that fits.
     let limit = gpu.device.limits().max_texture_dimension_2d;
     let mut shrunk: Option<Pixels> = None;
@@ -40,7 +44,7 @@ fn upload(gpu: &Gpu, usage: &Usage, pixels: &Pixels) -> wgpu::TextureView {
     let largest = shrunk.as_ref().unwrap_or(pixels);
     let levels = largest.width.max(largest.height).ilog2() + 1;
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("photo"),
+        label: Some("photo or surface"),
         size: wgpu::Extent3d { width: largest.width, height: largest.height, depth_or_array_layers: 1 },
         mip_level_count: levels,
         sample_count: 1,

@@ -2,34 +2,39 @@
 
 use std::sync::Arc;
 
+use super::lines::Line3;
 use crate::math::{ImageRect, Intrinsics, Pose};
 use crate::mesh::Mesh;
 use crate::photo::Pixels;
-use crate::scene::{MeshAsset, ObjectId, PhotoId, Rgb, Scene, reference_color};
+use crate::scene::{Layers, Look, MeshAsset, ObjectId, OverlayMode, PhotoId, Rgb, Scene, reference_color};
 
-/// The width of a reference's outline on screen.
-pub const GHOST_WIDTH_POINTS: f32 = 2.25;
-
-/// One picture: a part of a photo with meshes over it.
+/// One picture: what a camera sees of a photo and the meshes in it.
+///
+/// In the photo view that camera is the photo's own, and the photo is what it sees. In a free view the photo is a plane in
+/// space, and the camera, an eye without distortion, may be anywhere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
+    /// Of the eye that looks: the photo's camera, or a free one.
     pub camera: Intrinsics,
-    /// The part of the `image` frame that fills the target.
+    /// Where the photo's camera is before that eye; the identity where the eye is that camera.
+    pub eye_from_camera: Pose,
+    /// The part of the eye's `image` frame that fills the target.
     pub rect: ImageRect,
     pub photo: Option<PhotoLayer>,
+    /// Of the photo's size, tinted, straight alpha; between photo and meshes.
+    pub masks: Option<PhotoLayer>,
     pub items: Vec<Item>,
     /// References: outlines only, dashed.
     pub ghosts: Vec<Item>,
-    /// 0 to 1, over all items.
-    pub overlay_opacity: f32,
-    pub outline: Option<Outline>,
-    /// Of the ghosts' outlines, in target pixels; they are there whether or not the items have theirs.
-    pub ghost_width_px: f32,
+    pub look: Look,
+    pub widths: LineWidths,
+    /// Of a free view: what is around the meshes in place of a photo that fills the target.
+    pub surroundings: Option<Surroundings>,
     /// Around the photo.
     pub background: Rgb,
 }
 
-/// The pixels under the meshes; shared, and the same where they are at the same place in memory.
+/// Pixels that lie under the meshes; shared, and the same where they are at the same place in memory.
 #[derive(Debug, Clone)]
 pub struct PhotoLayer(pub Arc<Pixels>);
 
@@ -43,6 +48,7 @@ impl PartialEq for PhotoLayer {
 #[derive(Debug, Clone)]
 pub struct Item {
     pub mesh: Arc<MeshAsset>,
+    /// In the frame of the photo's camera, also where another eye looks.
     pub camera_from_object: Pose,
     pub color: Rgb,
     pub opacity: f32,
@@ -66,27 +72,83 @@ impl Item {
     }
 }
 
-/// Line widths in target pixels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outline {
-    pub width_px: f32,
-    pub selected_width_px: f32,
+/// What a free eye sees besides meshes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surroundings {
+    /// Where [`Picture::photo`] and its masks are.
+    pub plane: Option<PhotoPlane>,
+    pub lines: Vec<Line3>,
 }
 
-impl Outline {
+/// The photo as a surface in its camera's frustum: each pixel lies on its own view ray, at this depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhotoPlane {
+    pub camera: Intrinsics,
+    pub distance_mm: f64,
+    /// 0 to 1.
+    pub opacity: f32,
+}
+
+/// Line widths in target pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineWidths {
+    pub outline_px: f32,
+    pub selected_outline_px: f32,
+    /// Of the ghosts' outlines; they are there whether or not the items have theirs.
+    pub ghost_px: f32,
+    /// Of feature edges.
+    pub edge_px: f32,
+    pub wireframe_px: f32,
+    /// Of the line where a wipe ends.
+    pub wipe_px: f32,
+}
+
+impl LineWidths {
     /// Lines that look the same on every screen.
     pub fn for_scale(pixels_per_point: f32) -> Self {
-        Self { width_px: 1.25 * pixels_per_point, selected_width_px: 2.25 * pixels_per_point }
+        Self {
+            outline_px: 1.25 * pixels_per_point,
+            selected_outline_px: 2.25 * pixels_per_point,
+            ghost_px: 2.25 * pixels_per_point,
+            edge_px: 1.5 * pixels_per_point,
+            wireframe_px: 0.9 * pixels_per_point,
+            wipe_px: 1.5 * pixels_per_point,
+        }
+    }
+}
+
+/// What a picture is made from.
+#[derive(Debug, Clone)]
+pub struct Subject<'a> {
+    pub scene: &'a Scene,
+    pub photo: PhotoId,
+    /// The photo, decoded.
+    pub pixels: Option<Arc<Pixels>>,
+    /// Of the photo's size, tinted, straight alpha.
+    pub masks: Option<Arc<Pixels>>,
+    pub selected: Option<ObjectId>,
+    pub look: Look,
+    pub pixels_per_point: f32,
+}
+
+impl<'a> Subject<'a> {
+    /// A photo of a scene as it is by default.
+    pub fn new(scene: &'a Scene, photo: PhotoId, pixels: Option<Arc<Pixels>>) -> Self {
+        Self {
+            scene,
+            photo,
+            pixels,
+            masks: None,
+            selected: None,
+            look: Look::default(),
+            pixels_per_point: 1.0,
+        }
     }
 }
 
 /// The whole of one photo of a scene, all of whose visible objects are in the picture.
-pub fn picture_of(
-    scene: &Scene,
-    photo: PhotoId,
-    pixels: Option<Arc<Pixels>>,
-    selected: Option<ObjectId>,
-) -> Option<Picture> {
+pub fn picture_of(subject: &Subject<'_>) -> Option<Picture> {
+    let Subject { scene, photo, .. } = *subject;
     let camera = scene.photo(photo)?.camera;
     let items = scene.objects_in(photo).filter(|(object, _)| object.visible).enumerate();
     let items = items.map(|(index, (object, annotation))| Item {
@@ -95,19 +157,67 @@ pub fn picture_of(
         color: object.color,
         opacity: object.opacity,
         id: item_id(index),
-        selected: Some(object.id) == selected,
+        selected: Some(object.id) == subject.selected,
     });
     Some(Picture {
         camera,
+        eye_from_camera: Pose::IDENTITY,
         rect: ImageRect::of_photo(camera.width, camera.height),
-        photo: pixels.map(PhotoLayer),
+        photo: subject.pixels.clone().map(PhotoLayer),
+        masks: subject.masks.clone().map(PhotoLayer),
         items: items.collect(),
         ghosts: ghosts_of(scene, photo),
-        overlay_opacity: 1.0,
-        outline: Some(Outline::for_scale(1.0)),
-        ghost_width_px: GHOST_WIDTH_POINTS,
+        look: subject.look,
+        widths: LineWidths::for_scale(subject.pixels_per_point),
+        surroundings: None,
         background: Rgb([24, 26, 31]),
     })
+}
+
+impl Picture {
+    pub(super) fn shows_meshes(&self) -> bool {
+        self.look.layers != Layers::PhotoOnly
+    }
+
+    pub(super) fn shows_photo(&self) -> bool {
+        self.photo.is_some() && self.look.layers != Layers::MeshOnly
+    }
+
+    pub(super) fn shows_masks(&self) -> bool {
+        self.masks.is_some() && self.look.layers != Layers::MeshOnly
+    }
+
+    pub(super) fn shows_ghosts(&self) -> bool {
+        self.shows_meshes() && !self.ghosts.is_empty()
+    }
+
+    /// The meshes' own surfaces or edges.
+    pub(super) fn fills(&self) -> bool {
+        self.shows_meshes() && self.look.mode != OverlayMode::Outline && !self.items.is_empty()
+    }
+
+    pub(super) fn outlines(&self) -> bool {
+        let wanted = self.look.outline || self.look.mode == OverlayMode::Outline;
+        self.shows_meshes() && wanted && !self.items.is_empty()
+    }
+
+    /// Objects that others hide are outlined too.
+    pub(super) fn outlines_hidden(&self) -> bool {
+        self.outlines() && self.look.x_ray && self.items.len() > 1
+    }
+
+    pub(super) fn lines(&self) -> &[Line3] {
+        self.surroundings.as_ref().map_or(&[], |surroundings| &surroundings.lines)
+    }
+
+    pub(super) fn plane(&self) -> Option<&PhotoPlane> {
+        self.surroundings.as_ref()?.plane.as_ref().filter(|_| self.shows_photo())
+    }
+
+    /// Where an item is before the eye that looks.
+    pub(super) fn eye_from_object(&self, item: &Item) -> Pose {
+        self.eye_from_camera * item.camera_from_object
+    }
 }
 
 fn ghosts_of(scene: &Scene, photo: PhotoId) -> Vec<Item> {

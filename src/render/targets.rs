@@ -5,42 +5,51 @@ pub const OVERLAY_SAMPLES: u32 = 4;
 pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// What targets are for. Those that only some pictures need are made for those only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TargetsKind {
+    pub size: [u32; 2],
+    pub has_backdrop: bool,
+    pub has_hidden_ids: bool,
+}
+
 /// Offscreen targets of one size.
 #[derive(Debug)]
 pub struct Targets {
-    pub size: [u32; 2],
-    /// Multisampled, then resolved into `overlay`: premultiplied sRGB.
-    pub overlay_samples: wgpu::TextureView,
+    pub kind: TargetsKind,
+    /// Multisampled, then resolved into `backdrop` first and `overlay` after it: premultiplied sRGB.
+    pub samples: wgpu::TextureView,
+    pub samples_depth: wgpu::TextureView,
     pub overlay: wgpu::TextureView,
-    pub overlay_depth: wgpu::TextureView,
+    pub backdrop: Option<wgpu::TextureView>,
     /// One sample at each pixel's centre: outline colour and id.
     pub ids: wgpu::Texture,
     pub ids_view: wgpu::TextureView,
-    pub ghosts_view: wgpu::TextureView,
+    pub hidden_ids: Option<wgpu::TextureView>,
+    pub ghosts: wgpu::TextureView,
     pub ids_depth: wgpu::TextureView,
 }
 
 impl Targets {
-    pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+    pub fn new(device: &wgpu::Device, kind: TargetsKind) -> Self {
+        let TargetsKind { size, .. } = kind;
         let read = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
         let none = wgpu::TextureUsages::empty();
-        let ids = target(device, "ids", size, COLOR_FORMAT, 1, read);
+        let color = |label| target(device, label, size, COLOR_FORMAT, 1, read);
+        let ids = color("ids");
+        let samples = target(device, "samples", size, COLOR_FORMAT, OVERLAY_SAMPLES, none);
+        let samples_depth = target(device, "samples' depth", size, DEPTH_FORMAT, OVERLAY_SAMPLES, none);
         Self {
-            size,
-            overlay_samples: view(&target(
-                device,
-                "overlay samples",
-                size,
-                COLOR_FORMAT,
-                OVERLAY_SAMPLES,
-                none,
-            )),
-            overlay: view(&target(device, "overlay", size, COLOR_FORMAT, 1, read)),
-            overlay_depth: view(&target(device, "overlay depth", size, DEPTH_FORMAT, OVERLAY_SAMPLES, none)),
+            kind,
+            samples: view(&samples),
+            samples_depth: view(&samples_depth),
+            overlay: view(&color("overlay")),
+            backdrop: kind.has_backdrop.then(|| view(&color("backdrop"))),
             ids_view: view(&ids),
             ids,
-            ghosts_view: view(&target(device, "ghosts", size, COLOR_FORMAT, 1, read)),
-            ids_depth: view(&target(device, "ids depth", size, DEPTH_FORMAT, 1, none)),
+            hidden_ids: kind.has_hidden_ids.then(|| view(&color("hidden ids"))),
+            ghosts: view(&color("ghosts")),
+            ids_depth: view(&target(device, "ids' depth", size, DEPTH_FORMAT, 1, none)),
         }
     }
 }

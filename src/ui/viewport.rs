@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use egui::{Align2, Area, Id, Order, RichText, Sense, Ui, Vec2};
 
 use super::{Surroundings, theme};
-use crate::render::{GHOST_WIDTH_POINTS, Outline, Picture, Renderer, picture_of};
-use crate::scene::AnnotationState;
+use crate::render::{Picture, Renderer, Subject, ViewSlot, picture_of};
+use crate::scene::{AnnotationState, Look};
 use crate::session::{Command, Session};
 
 /// The renderer belongs to the interface's paint callbacks and to exports.
@@ -67,11 +67,16 @@ pub fn draw(
 
 fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) -> Option<Picture> {
     let photo = session.photo()?;
-    let mut picture = picture_of(session.scene(), photo.id, around.pixels.clone(), session.selected())?;
+    let crate::session::Look { overlay_opacity, outline } = session.look();
+    let look = Look { overlay_opacity, outline, ..Look::default() };
+    let subject = Subject {
+        selected: session.selected(),
+        look,
+        pixels_per_point,
+        ..Subject::new(session.scene(), photo.id, around.pixels.clone())
+    };
+    let mut picture = picture_of(&subject)?;
     picture.rect = around.view.visible_rect();
-    picture.overlay_opacity = session.look().overlay_opacity;
-    picture.ghost_width_px = GHOST_WIDTH_POINTS * pixels_per_point;
-    picture.outline = session.look().outline.then(|| Outline::for_scale(pixels_per_point));
     Some(picture)
 }
 
@@ -181,7 +186,13 @@ impl egui_wgpu::CallbackTrait for SceneCallback {
         _resources: &mut egui_wgpu::CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         let mut renderer = self.renderer.lock().unwrap_or_else(PoisonError::into_inner);
-        renderer.prepare(encoder, &self.picture, self.place.corner_px(), self.place.size_px());
+        renderer.prepare(
+            ViewSlot::Photo,
+            encoder,
+            &self.picture,
+            self.place.corner_px(),
+            self.place.size_px(),
+        );
         Vec::new()
     }
 
@@ -191,6 +202,6 @@ impl egui_wgpu::CallbackTrait for SceneCallback {
         pass: &mut wgpu::RenderPass<'static>,
         _resources: &egui_wgpu::CallbackResources,
     ) {
-        self.renderer.lock().unwrap_or_else(PoisonError::into_inner).paint(pass);
+        self.renderer.lock().unwrap_or_else(PoisonError::into_inner).paint(ViewSlot::Photo, pass);
     }
 }

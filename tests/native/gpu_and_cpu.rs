@@ -9,8 +9,8 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 use pinpose::math::{Distortion, ImageRect, Intrinsics, Pose};
 use pinpose::mesh::{Bvh, Mesh, MeshData};
 use pinpose::raster::{Mask, PixelRegion, RasterItem, rasterize};
-use pinpose::render::{Item, Layer, Picture, Renderer};
-use pinpose::scene::{MeshAsset, Rgb, Sha256};
+use pinpose::render::{Item, Layer, LineWidths, Picture, Renderer};
+use pinpose::scene::{Look, MeshAsset, Rgb, Sha256};
 
 use crate::support::{linemod_session, renderer};
 
@@ -87,9 +87,11 @@ fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose
         photo: None,
         items: vec![item],
         ghosts: Vec::new(),
-        overlay_opacity: 1.0,
-        outline: None,
-        ghost_width_px: 0.0,
+        eye_from_camera: Pose::IDENTITY,
+        masks: None,
+        look: Look { outline: false, ..Look::default() },
+        widths: LineWidths::for_scale(1.0),
+        surroundings: None,
         background: Rgb([0; 3]),
     }
 }
@@ -171,7 +173,7 @@ fn references_are_outlined_whether_or_not_objects_are() {
     let mut picture = picture(camera, whole, disc(40.0), Pose::from_translation(DVec3::Z * 500.0));
     picture.ghosts = std::mem::take(&mut picture.items);
     picture.ghosts[0].color = Rgb([255, 64, 220]);
-    picture.ghost_width_px = 2.0;
+    picture.widths.ghost_px = 2.0;
     let pending = renderer.draw_and_read(&picture, [200, 150], Layer::Picture);
     let pixels = pending.wait(renderer.gpu()).unwrap();
     let drawn = pixels.rgba.chunks_exact(4).filter(|texel| texel[0] > 128).count();

@@ -9,12 +9,15 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::formats::{NamedFile, read_mesh, read_photo};
-use crate::mesh::{Bvh, Mesh, MeshData};
+use crate::mesh::{Bvh, Material, Mesh, MeshData, Paint};
 use crate::photo::Pixels;
 use crate::platform::Background;
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
 
 use wire::{Reader, Writer};
+
+/// A material without texture, on the wire.
+const NO_TEXTURE: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JobKind {
@@ -155,10 +158,43 @@ fn write_mesh(asset: &MeshAsset, warnings: &[String]) -> Vec<u8> {
     writer.items(&data.triangles);
     writer.items(data.normals.as_deref().unwrap_or_default());
     writer.items(data.colors.as_deref().unwrap_or_default());
+    write_paint(&mut writer, data.paint.as_ref().unwrap_or(&Paint::default()));
     writer.bytes(nodes);
     writer.items(order);
     writer.bytes(warnings.join("\n").as_bytes());
     writer.finish()
+}
+
+fn write_paint(writer: &mut Writer, paint: &Paint) {
+    writer.items(&paint.corner_uvs);
+    writer.items(&paint.material_of_triangle);
+    let colors: Vec<[u8; 4]> = paint.materials.iter().map(|material| material.base_color).collect();
+    let textures: Vec<u32> =
+        paint.materials.iter().map(|material| material.texture.unwrap_or(NO_TEXTURE)).collect();
+    writer.items(&colors);
+    writer.items(&textures);
+    writer.number(paint.textures.len() as f64);
+    for texture in &paint.textures {
+        writer.number(f64::from(texture.width));
+        writer.number(f64::from(texture.height));
+        writer.bytes(&texture.rgba);
+    }
+}
+
+fn read_paint(reader: &mut Reader<'_>) -> Option<Paint> {
+    let (corner_uvs, material_of_triangle) = (reader.items()?, reader.items()?);
+    let (colors, texture_numbers): (Vec<[u8; 4]>, Vec<u32>) = (reader.items()?, reader.items()?);
+    let materials = colors.into_iter().zip(texture_numbers).map(|(base_color, texture)| Material {
+        base_color,
+        texture: Some(texture).filter(|&texture| texture != NO_TEXTURE),
+    });
+    let texture_count = reader.number()? as usize;
+    let mut textures = Vec::new();
+    for _ in 0..texture_count {
+        let (width, height) = (reader.number()? as u32, reader.number()? as u32);
+        textures.push(Arc::new(Pixels { width, height, rgba: reader.bytes()?.to_vec() }));
+    }
+    Some(Paint { corner_uvs, material_of_triangle, materials: materials.collect(), textures })
 }
 
 fn read_mesh_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
@@ -168,6 +204,7 @@ fn read_mesh_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
         triangles: reader.items()?,
         normals: Some(reader.items()?).filter(|normals| !normals.is_empty()),
         colors: Some(reader.items()?).filter(|colors| !colors.is_empty()),
+        paint: Some(read_paint(reader)?).filter(|paint| !paint.materials.is_empty()),
     };
     let bvh = Bvh::from_parts(reader.bytes()?, reader.items()?)?;
     let warnings = String::from_utf8(reader.bytes()?.to_vec()).ok()?;
