@@ -5,8 +5,9 @@ use glam::DVec2;
 
 use super::PinPose;
 use crate::interact::{Button, Hit, Modifiers, PointerAction, PointerEvent, pick_all};
-use crate::session::Command;
-use crate::ui::{ViewportPlace, pressed_commands};
+use crate::scene::Look;
+use crate::session::{Command, CommandId};
+use crate::ui::{Pressed, ViewportPlace, is_released, pressed_commands};
 
 /// Points of scrolling that browsers report for one notch of a wheel.
 const POINTS_PER_NOTCH: f32 = 100.0;
@@ -17,12 +18,35 @@ const LEAST_POINTS_OF_A_NOTCH: f32 = 40.0;
 impl PinPose {
     /// Keys act while no text is being edited and nothing is open that has keys of its own.
     pub(super) fn take_keys(&mut self, ctx: &egui::Context) {
+        self.show_overlay_after_hold(ctx);
         let dialog_is_open = self.session.question().is_some() || self.ui_state.open.is_some();
         if dialog_is_open || ctx.text_edit_focused() || egui::Popup::is_any_open(ctx) {
             return;
         }
-        for id in ctx.input_mut(pressed_commands) {
-            self.apply(Command::Run(id));
+        for Pressed { id, factor } in ctx.input_mut(pressed_commands) {
+            match id.nudge() {
+                Some(nudge) => self.apply(Command::Nudge(nudge, factor)),
+                None if id == CommandId::ToggleOverlay => self.hide_overlay_by_hold(),
+                None => self.apply(Command::Run(id)),
+            }
+        }
+        for text in ctx.input_mut(pasted_texts) {
+            self.apply(Command::SetPoseFromText(text));
+        }
+    }
+
+    /// The overlay's key works as long as it is down; what is hidden already it shows.
+    fn hide_overlay_by_hold(&mut self) {
+        if self.layers_before_hold.is_none() {
+            self.layers_before_hold = Some(self.session.look().layers);
+            self.apply(Command::Run(CommandId::ToggleOverlay));
+        }
+    }
+
+    fn show_overlay_after_hold(&mut self, ctx: &egui::Context) {
+        let released = ctx.input(|input| is_released(input, CommandId::ToggleOverlay));
+        if let Some(layers) = self.layers_before_hold.take_if(|_| released) {
+            self.apply(Command::SetLook(Look { layers, ..self.session.look() }));
         }
     }
 
@@ -53,6 +77,19 @@ impl PinPose {
     pub(super) fn hit_under_cursor(&self, pixel: Option<DVec2>) -> Option<Hit> {
         pick_all(self.session.scene(), self.session.photo()?.id, pixel?).first().copied()
     }
+}
+
+/// What was pasted while no text field had the focus.
+fn pasted_texts(input: &mut egui::InputState) -> Vec<String> {
+    let mut texts = Vec::new();
+    input.events.retain(|event| match event {
+        Event::Paste(text) => {
+            texts.push(text.clone());
+            false
+        }
+        _ => true,
+    });
+    texts
 }
 
 /// What the pointer did in this frame, in order.

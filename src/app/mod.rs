@@ -42,6 +42,8 @@ pub struct PinPose {
     pictures: pictures::Pictures,
     ctx: egui::Context,
     performance: performance::Performance,
+    /// While the key that hides the overlay is down: what was shown before.
+    layers_before_hold: Option<crate::scene::Layers>,
     events: events::Events,
     /// Read at the start of each frame: where the pointer is over the viewport, in its physical pixels.
     pointer: Option<glam::DVec2>,
@@ -85,6 +87,7 @@ impl PinPose {
             pictures: pictures::Pictures::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
+            layers_before_hold: None,
             events: events::Events::default(),
             pointer: None,
         };

@@ -17,7 +17,7 @@ use egui::{CentralPanel, Frame, Panel};
 use crate::interact::PhotoView;
 use crate::session::{Command, Session};
 
-pub use shortcuts::{pressed_commands, shortcut_text};
+pub use shortcuts::{Pressed, is_released, pressed_commands, shortcut_text};
 pub use theme::apply_theme;
 pub use toasts::Toasts;
 pub use viewport::{SharedRenderer, ViewportPlace};

@@ -6,7 +6,7 @@ use egui::{Align2, Area, Id, Order, RichText, Sense, Ui, Vec2};
 
 use super::{Surroundings, theme};
 use crate::render::{Picture, Renderer, Subject, ViewSlot, picture_of};
-use crate::scene::{AnnotationState, Look};
+use crate::scene::AnnotationState;
 use crate::session::{Command, Session};
 
 /// The renderer belongs to the interface's paint callbacks and to exports.
@@ -67,11 +67,9 @@ pub fn draw(
 
 fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) -> Option<Picture> {
     let photo = session.photo()?;
-    let crate::session::Look { overlay_opacity, outline } = session.look();
-    let look = Look { overlay_opacity, outline, ..Look::default() };
     let subject = Subject {
         selected: session.selected(),
-        look,
+        look: session.look(),
         pixels_per_point,
         ..Subject::new(session.scene(), photo.id, around.pixels.clone())
     };
