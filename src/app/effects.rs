@@ -1,8 +1,9 @@
 //! Carrying out what the session asks of the world outside.
 
 use super::PinPose;
-use crate::interact::object_rect;
+use crate::interact::{SceneMove, Viewpoint};
 use crate::platform;
+use crate::scene::ObjectId;
 use crate::session::{Effect, Notice, Session};
 use crate::ui::Dialog;
 
@@ -21,23 +22,26 @@ impl PinPose {
             Effect::AskForPose => self.ui_state.open = Some(Dialog::PastePose),
             Effect::NewScene => self.session = Session::default(),
             Effect::ShowScenes | Effect::SaveNow | Effect::AskSaveAs => {}
-            Effect::ResetSceneView => {}
+            Effect::ResetSceneView => self.hands.move_scene(SceneMove::Reset, &self.session),
             Effect::TogglePalette => self.ui_state.toggle(Dialog::Palette),
             Effect::ToggleTheme => {}
             Effect::RenameSelected => {}
-            Effect::ZoomToObject => self.zoom_to_object(),
-            Effect::FitPhoto => self.view.fit(),
+            Effect::ZoomToObject => self.show(self.session.selected()),
+            Effect::FitPhoto => self.show(None),
             Effect::TogglePanels => self.ui_state.panels_hidden = !self.ui_state.panels_hidden,
             Effect::ToggleShortcuts => self.ui_state.toggle(Dialog::Shortcuts),
             Effect::Notify(notice) => self.notify(notice),
         }
     }
 
-    fn zoom_to_object(&mut self) {
-        let selected = self.session.selected_annotation();
-        let rect = selected.and_then(|(photo, object, _)| object_rect(self.session.scene(), photo, object));
-        if let Some(rect) = rect {
-            self.view.show(&rect);
+    /// Shows an object, or everything, in the views that are on screen.
+    fn show(&mut self, object: Option<ObjectId>) {
+        let arrangement = self.session.panes().arrangement;
+        if arrangement.shows_photo() {
+            Viewpoint::show(&mut self.hands.photo_view, &self.session, object);
+        }
+        if arrangement.shows_scene() {
+            self.hands.scene_view.show(&self.session, object);
         }
     }
 }

@@ -4,7 +4,7 @@ use egui::{Event, MouseWheelUnit, PointerButton};
 use glam::DVec2;
 
 use super::PinPose;
-use crate::interact::{Button, Hit, Modifiers, PointerAction, PointerEvent, pick_all};
+use crate::interact::{Button, Modifiers, Pane, PointerAction, PointerEvent};
 use crate::scene::Look;
 use crate::session::{Command, CommandId};
 use crate::ui::{Pressed, ViewportPlace, is_released, pressed_commands};
@@ -50,33 +50,79 @@ impl PinPose {
         }
     }
 
-    /// Reads the pointer against the viewport's place in the last frame, so that the picture of this one is not late.
+    /// Reads the pointer against the views' places in the last frame, so that the picture of this one is not late.
     pub(super) fn take_gestures(&mut self, ctx: &egui::Context) {
-        self.pointer = None;
-        let Some(place) = self.ui_state.viewport else { return };
-        self.place_view();
-        for event in pointer_events(ctx, &place) {
-            let commands = self.gestures.handle(&event, &self.session, &mut self.view);
+        self.hands.pointer = None;
+        self.place_views();
+        if self.hands.scene_view.advance(ctx.input(|input| input.time)) {
+            ctx.request_repaint();
+        }
+        let places = self.places();
+        let two_fingers = self.take_two_fingers(ctx, &places);
+        for event in pointer_events(ctx, &places) {
+            if two_fingers && !matches!(event.action, PointerAction::Release(_)) {
+                continue;
+            }
+            let pane = if event.is_new { event.over } else { self.hands.held_in().or(event.over) };
+            let Some((pane, place)) = pane.and_then(|pane| Some((pane, place_of(&places, pane)?))) else {
+                continue;
+            };
+            let commands = self.hands.handle(pane, &event.against(place), &self.session);
             commands.into_iter().for_each(|command| self.apply(command));
         }
         let position = ctx.input(|input| input.pointer.latest_pos());
-        self.pointer = position
-            .filter(|position| is_over(ctx, &place, *position))
-            .map(|position| to_viewport(&place, position));
+        let over = position.and_then(|position| Some((pane_at(ctx, &places, position)?, position)));
+        self.hands.pointer =
+            over.and_then(|(pane, position)| Some((pane, to_viewport(place_of(&places, pane)?, position))));
     }
 
-    /// Tells the view how large viewport and photo are.
-    pub(super) fn place_view(&mut self) {
+    /// Two fingers pan and zoom; the gesture that the first one began is put back.
+    fn take_two_fingers(&mut self, ctx: &egui::Context, places: &Places) -> bool {
+        let Some(touch) = ctx.multi_touch() else { return false };
+        if self.hands.is_dragging_object() {
+            self.apply(Command::CancelGesture);
+        }
+        self.hands.cancel();
+        let Some(pane) = pane_at(ctx, places, touch.start_pos) else { return true };
+        let Some(place) = place_of(places, pane) else { return true };
+        let scale = f64::from(place.pixels_per_point);
+        let way_px = DVec2::new(f64::from(touch.translation_delta.x), f64::from(touch.translation_delta.y));
+        let middle = to_viewport(place, touch.center_pos);
+        let factor = f64::from(touch.zoom_delta);
+        self.hands.two_fingers(pane, middle, way_px * scale, factor, &self.session);
+        true
+    }
+
+    /// Tells the views how large they are and what they show.
+    pub(super) fn place_views(&mut self) {
+        let size_of = |place: ViewportPlace| DVec2::from_array(place.size_px().map(f64::from));
         if let (Some(place), Some(photo)) = (self.ui_state.viewport, self.session.photo()) {
-            let size = place.size_px().map(f64::from);
             let photo_size = DVec2::new(f64::from(photo.asset.width), f64::from(photo.asset.height));
-            self.view.set_sizes(DVec2::from_array(size), photo_size);
+            self.hands.photo_view.set_sizes(size_of(place), photo_size);
+            self.hands.set_pixels_per_point(f64::from(place.pixels_per_point));
+        }
+        if let Some(place) = self.ui_state.scene_viewport {
+            self.hands.scene_view.set_scene(size_of(place), &self.session);
+            self.hands.set_pixels_per_point(f64::from(place.pixels_per_point));
         }
     }
 
-    pub(super) fn hit_under_cursor(&self, pixel: Option<DVec2>) -> Option<Hit> {
-        pick_all(self.session.scene(), self.session.photo()?.id, pixel?).first().copied()
+    fn places(&self) -> Places {
+        let photo = self.ui_state.viewport.map(|place| (Pane::Photo, place));
+        let scene = self.ui_state.scene_viewport.map(|place| (Pane::Scene, place));
+        photo.into_iter().chain(scene).collect()
     }
+}
+
+/// The views that are on screen.
+type Places = Vec<(Pane, ViewportPlace)>;
+
+fn place_of(places: &Places, pane: Pane) -> Option<&ViewportPlace> {
+    places.iter().find(|(candidate, _)| *candidate == pane).map(|(_, place)| place)
+}
+
+fn pane_at(ctx: &egui::Context, places: &Places, position: egui::Pos2) -> Option<Pane> {
+    places.iter().find(|(_, place)| is_over(ctx, place, position)).map(|(pane, _)| *pane)
 }
 
 /// What was pasted while no text field had the focus.
@@ -92,52 +138,69 @@ fn pasted_texts(input: &mut egui::InputState) -> Vec<String> {
     texts
 }
 
+/// Something that the pointer did somewhere on the page.
+struct PageEvent {
+    position: egui::Pos2,
+    action: PointerAction,
+    modifiers: egui::Modifiers,
+    /// The view that the pointer is over, with nothing before it.
+    over: Option<Pane>,
+    /// Belongs where the pointer is, not where a button was pressed.
+    is_new: bool,
+}
+
+impl PageEvent {
+    fn against(&self, place: &ViewportPlace) -> PointerEvent {
+        let egui::Modifiers { shift, command, alt, .. } = self.modifiers;
+        let modifiers = Modifiers { shift, ctrl: command, alt };
+        PointerEvent { position: to_viewport(place, self.position), action: self.action, modifiers }
+    }
+}
+
 /// What the pointer did in this frame, in order.
-fn pointer_events(ctx: &egui::Context, place: &ViewportPlace) -> Vec<PointerEvent> {
+fn pointer_events(ctx: &egui::Context, places: &Places) -> Vec<PageEvent> {
     let (events, latest, frame_modifiers, double_clicked) = ctx.input(|input| {
         let double_clicked = input.pointer.button_double_clicked(PointerButton::Primary);
         (input.events.clone(), input.pointer.latest_pos(), input.modifiers, double_clicked)
     });
     let mut pointer = latest;
     let mut read = Vec::new();
+    let mut add = |position: Option<egui::Pos2>, action: Option<PointerAction>, modifiers| {
+        let (Some(position), Some(action)) = (position, action) else { return };
+        let over = pane_at(ctx, places, position);
+        let is_new = matches!(action, PointerAction::Press(_) | PointerAction::DoubleClick);
+        read.push(PageEvent { position, action, modifiers, over, is_new });
+    };
     for event in events {
-        let (position, action, modifiers) = match event {
-            Event::PointerMoved(position) => (Some(position), Some(PointerAction::Move), frame_modifiers),
+        match event {
+            Event::PointerMoved(position) => {
+                pointer = Some(position);
+                add(pointer, Some(PointerAction::Move), frame_modifiers);
+            }
             Event::PointerButton { pos, button, pressed, modifiers } => {
-                let free = !pressed || is_over(ctx, place, pos);
-                let action = pointer_button(button).filter(|_| free).map(|button| match pressed {
+                pointer = Some(pos);
+                let action = pointer_button(button).map(|button| match pressed {
                     true => PointerAction::Press(button),
                     false => PointerAction::Release(button),
                 });
-                (Some(pos), action, modifiers)
+                add(pointer, action, modifiers);
             }
             Event::MouseWheel { unit, delta, modifiers, .. } => {
-                (pointer, Some(PointerAction::Wheel(notches(unit, delta))), modifiers)
+                // Over a panel the wheel is the panel's, also while something is held.
+                let over = pointer.filter(|position| pane_at(ctx, places, *position).is_some());
+                add(over, Some(PointerAction::Wheel(notches(unit, delta))), modifiers);
             }
-            Event::Zoom(factor) => (pointer, Some(PointerAction::Pinch(f64::from(factor))), frame_modifiers),
-            _ => continue,
-        };
-        pointer = position.or(pointer);
-        let (Some(position), Some(action)) = (position, action) else { continue };
-        let needs_hover = matches!(action, PointerAction::Wheel(_) | PointerAction::Pinch(_));
-        if !needs_hover || is_over(ctx, place, position) {
-            read.push(pointer_event(place, position, action, modifiers));
+            Event::Zoom(factor) => {
+                let over = pointer.filter(|position| pane_at(ctx, places, *position).is_some());
+                add(over, Some(PointerAction::Pinch(f64::from(factor))), frame_modifiers);
+            }
+            _ => {}
         }
     }
-    if let Some(position) = pointer.filter(|position| double_clicked && is_over(ctx, place, *position)) {
-        read.push(pointer_event(place, position, PointerAction::DoubleClick, frame_modifiers));
+    if double_clicked {
+        add(pointer, Some(PointerAction::DoubleClick), frame_modifiers);
     }
     read
-}
-
-fn pointer_event(
-    place: &ViewportPlace,
-    position: egui::Pos2,
-    action: PointerAction,
-    modifiers: egui::Modifiers,
-) -> PointerEvent {
-    let modifiers = Modifiers { shift: modifiers.shift, ctrl: modifiers.command, alt: modifiers.alt };
-    PointerEvent { position: to_viewport(place, position), action, modifiers }
 }
 
 fn to_viewport(place: &ViewportPlace, position: egui::Pos2) -> DVec2 {

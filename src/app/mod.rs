@@ -18,7 +18,7 @@ mod widgets;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex};
 
-use crate::interact::{PhotoGestures, PhotoView};
+use crate::interact::Hands;
 use crate::platform::{self, PageCalls, Storage};
 use crate::render::{Gpu, Renderer};
 use crate::session::{Command, Notice, Session};
@@ -29,8 +29,7 @@ pub use jobs::run_job;
 /// The whole program.
 pub struct PinPose {
     session: Session,
-    view: PhotoView,
-    gestures: PhotoGestures,
+    hands: Hands,
     ui_state: UiState,
     loading: loading::Loading,
     photos: photo_cache::PhotoCache,
@@ -45,8 +44,6 @@ pub struct PinPose {
     /// While the key that hides the overlay is down: what was shown before.
     layers_before_hold: Option<crate::scene::Layers>,
     events: events::Events,
-    /// Read at the start of each frame: where the pointer is over the viewport, in its physical pixels.
-    pointer: Option<glam::DVec2>,
 }
 
 /// What the program starts with.
@@ -74,8 +71,7 @@ impl PinPose {
         let backend = gpu_state.map(|state| backend_name(&state.adapter)).unwrap_or_default();
         let mut app = Self {
             session: Session::default(),
-            view: PhotoView::default(),
-            gestures: PhotoGestures::default(),
+            hands: Hands::default(),
             ui_state: UiState::default(),
             loading: loading::Loading::new(ctx),
             photos: photo_cache::PhotoCache::default(),
@@ -89,7 +85,6 @@ impl PinPose {
             performance: performance::Performance::default(),
             layers_before_hold: None,
             events: events::Events::default(),
-            pointer: None,
         };
         if start.restore {
             app.autosave.restore();
@@ -109,7 +104,7 @@ impl PinPose {
 
     fn try_apply(&mut self, command: Command) -> Result<(), String> {
         if matches!(command, Command::CancelGesture | Command::Run(crate::session::CommandId::Cancel)) {
-            self.gestures.cancel();
+            self.hands.cancel();
         }
         let effects = self.session.apply(command, platform::now_ms()).map_err(|error| error.to_string())?;
         effects.into_iter().for_each(|effect| self.carry_out(effect));
@@ -139,24 +134,24 @@ impl eframe::App for PinPose {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
-        let cursor_pixel = self.pointer.map(|position| self.view.image_from_viewport(position));
         let around = ui::Surroundings {
-            view: &self.view,
+            hands: &self.hands,
             renderer: self.renderer.as_ref(),
             pixels,
             saving: self.autosave.state(&self.session),
             busy: self.loading.busy_text(),
             update_ready: platform::update_offer().is_some(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
-            under_cursor: self.hit_under_cursor(cursor_pixel),
-            cursor_pixel,
-            dragging: self.gestures.is_dragging_object(),
         };
         if self.performance.start_ms == 0.0 {
             self.performance.start_ms = platform::navigation_ms();
         }
         let asked = ui::draw(ui, &self.session, &around, &mut self.ui_state);
-        self.place_view();
+        self.place_views();
+        if let Some(moved) = asked.scene_move {
+            self.hands.move_scene(moved, &self.session);
+            ui.ctx().request_repaint();
+        }
         if asked.apply_update {
             platform::reload();
         }

@@ -14,7 +14,7 @@ mod welcome;
 
 use egui::{CentralPanel, Frame, Panel};
 
-use crate::interact::PhotoView;
+use crate::interact::{Hands, SceneMove};
 use crate::session::{Command, Session};
 
 pub use shortcuts::{Pressed, is_released, pressed_commands, shortcut_text};
@@ -30,8 +30,10 @@ pub struct UiState {
     pub open: Option<Dialog>,
     pub toasts: Toasts,
     camera_form: camera_panel::CameraForm,
-    /// Where the viewport was in the last frame.
+    /// Where the photo view and the scene view were in the last frame; `None` where they were not on screen.
     pub viewport: Option<ViewportPlace>,
+    pub scene_viewport: Option<ViewportPlace>,
+    split: viewport::SplitState,
 }
 
 /// Windows that come up over the rest, one at a time.
@@ -50,7 +52,7 @@ impl UiState {
 
 /// What the interface shows besides the session.
 pub struct Surroundings<'a> {
-    pub view: &'a PhotoView,
+    pub hands: &'a Hands,
     pub renderer: Option<&'a SharedRenderer>,
     /// The pixels of the photo that is shown, once they are decoded.
     pub pixels: Option<std::sync::Arc<crate::photo::Pixels>>,
@@ -60,11 +62,6 @@ pub struct Surroundings<'a> {
     pub update_ready: bool,
     /// Files are being dragged over the window.
     pub files_hover: bool,
-    /// The surface point under the cursor.
-    pub under_cursor: Option<crate::interact::Hit>,
-    /// The point of the photo under the cursor.
-    pub cursor_pixel: Option<glam::DVec2>,
-    pub dragging: bool,
 }
 
 /// Is the scene in the browser's storage?
@@ -80,6 +77,7 @@ pub enum Saving {
 #[derive(Debug, Default)]
 pub struct Asked {
     pub commands: Vec<Command>,
+    pub scene_move: Option<SceneMove>,
     pub apply_update: bool,
 }
 
@@ -99,10 +97,10 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     }
     CentralPanel::default().frame(Frame::NONE.fill(theme::VIEWPORT_BACKGROUND)).show(ui, |ui| {
         if session.scene().is_empty() {
-            state.viewport = None;
+            (state.viewport, state.scene_viewport) = (None, None);
             welcome::draw(ui, around, &mut asked.commands);
         } else {
-            state.viewport = Some(viewport::draw(ui, session, around, &mut asked.commands));
+            viewport::draw(ui, session, around, state, &mut asked);
         }
     });
     dialogs::draw(ui.ctx(), session, state, &mut asked.commands);

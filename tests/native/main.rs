@@ -12,6 +12,7 @@ mod layers;
 mod linemod;
 mod mesh_corpus;
 mod panels;
+mod scene_view;
 mod scripts;
 mod shaders;
 mod support;

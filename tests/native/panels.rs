@@ -6,7 +6,7 @@ use std::rc::Rc;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use pinpose::formats::PosesAs;
-use pinpose::interact::PhotoView;
+use pinpose::interact::Hands;
 use pinpose::session::{Command, CommandId, Session};
 use pinpose::ui::{self, Saving, Surroundings, UiState};
 
@@ -20,16 +20,13 @@ fn harness(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>) {
     let harness = Harness::builder().with_size([1024.0, 720.0]).build_ui(move |ui| {
         ui::apply_theme(ui.ctx());
         let around = Surroundings {
-            view: &PhotoView::default(),
+            hands: &Hands::default(),
             renderer: None,
             pixels: None,
             saving: Saving::Saved,
             busy: None,
             update_ready: false,
             files_hover: false,
-            under_cursor: None,
-            cursor_pixel: None,
-            dragging: false,
         };
         let asked = ui::draw(ui, &shared.borrow(), &around, &mut state);
         for command in asked.commands {
