@@ -283,6 +283,10 @@ impl SceneView {
         let down = most(&|point| point.y - tangents.y * point.z);
         let up = most(&|point| -point.y - tangents.y * point.z);
         let depth = (-(right + left) / (2.0 * tangents.x)).min(-(down + up) / (2.0 * tangents.y));
+        // Nothing is nearer than a sixteenth of what is seen is deep.
+        let (nearest, farthest) = (-most(&|point| -point.z), most(&|point| point.z));
+        let room = ((farthest - nearest) / 16.0).max(NEAREST_MM);
+        let depth = depth.min(nearest - room);
         let eye = DVec3::new((right - left) / 2.0, (down - up) / 2.0, depth);
         if eye.is_finite() { Place { eye_mm: rotation.transpose() * eye, ..place } } else { place }
     }
@@ -409,7 +413,7 @@ mod tests {
         }
 
         #[test]
-        fn what_is_fitted_is_in_view_and_touches_its_bounds(
+        fn what_is_fitted_is_in_view(
             points in prop::collection::vec((-500.0..500.0, -500.0..500.0, 0.0..2000.0), 2..20)
         ) {
             let points: Vec<DVec3> = points.into_iter().map(|(x, y, z)| DVec3::new(x, y, z)).collect();
@@ -421,7 +425,7 @@ mod tests {
                 let offset = (seen(&view, point) + 0.5 - half).abs() / half;
                 farthest = farthest.max(offset.max_element());
             }
-            prop_assert!((farthest - FILLED).abs() < 1e-6, "{farthest}");
+            prop_assert!(farthest < FILLED + 1e-6, "{farthest}");
         }
     }
 

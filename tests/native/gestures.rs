@@ -213,6 +213,8 @@ fn a_locked_object_stays_while_the_hand_moves() {
 #[test]
 fn a_confirmed_object_stays_and_says_why() {
     let mut hand = Hand::new();
+    let middle = hand.middle();
+    hand.drag(Button::Left, middle, middle + DVec2::new(10.0, 0.0));
     hand.session.apply(Command::Run(CommandId::ConfirmAndNext), NOW_MS).unwrap();
     let (before, middle) = (hand.pose(), hand.middle());
     hand.drag(Button::Right, middle, middle + DVec2::new(50.0, 0.0));

@@ -16,7 +16,7 @@ use pinpose::scene::PoseSource;
 use pinpose::session::{Arrangement, Command, CommandId, ObjectChange, Session};
 use pinpose::ui::{self, Saving, Surroundings, UiState};
 
-use crate::support::{CAMERA_JSON, NOW_MS, box_mesh, drop_files, flat_photo, small_session, text_file};
+use crate::support::{NOW_MS, box_mesh, drop_files, flat_photo, small_session};
 
 struct Hand<V> {
     session: Session,
@@ -182,8 +182,8 @@ fn a_double_click_zooms_to_the_object_and_on_the_ground_fits() {
 #[test]
 fn other_photos_cameras_stand_where_an_object_in_both_puts_them() {
     let mut session = Session::default();
-    let mut files = vec![flat_photo("a.png", 640, 480), flat_photo("b.png", 640, 480)];
-    files.extend([box_mesh("box.obj"), text_file("camera.json", CAMERA_JSON)]);
+    let mut files = vec![flat_photo("a.png", 640, 480), flat_photo("b.png", 320, 240)];
+    files.push(box_mesh("box.obj"));
     drop_files(&mut session, &files, None);
     assert!(other_cameras(&session).is_empty(), "nothing is placed yet");
     let object = session.scene().objects[0].id;

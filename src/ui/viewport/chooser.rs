@@ -2,9 +2,9 @@
 
 use egui::{Align2, Area, ComboBox, Id, Order, Rect, Ui, Vec2};
 
-use super::colors;
 use crate::scene::{Look, OverlayMode};
 use crate::session::{Arrangement, Command, CommandId, Session};
+use crate::ui::theme;
 
 pub fn draw(ui: &Ui, whole: Rect, session: &Session, commands: &mut Vec<Command>) {
     if session.photo().is_none() {
@@ -16,7 +16,7 @@ pub fn draw(ui: &Ui, whole: Rect, session: &Session, commands: &mut Vec<Command>
         .fixed_pos(whole.left_top() + Vec2::splat(10.0))
         .constrain_to(whole)
         .show(ui.ctx(), |ui| {
-            colors::overlay_frame(ui.visuals()).inner_margin(3).show(ui, |ui| {
+            theme::overlay_frame().show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
                     arrangement(ui, session, commands);

@@ -60,7 +60,7 @@ pub fn errors(ui: &Ui, whole: Rect, session: &Session) {
             error.translation_mm,
             error.add_mm
         );
-        job.append(&numbers, 12.0, format(ui.visuals().text_color()));
+        job.append(&numbers, 12.0, format(colors::TEXT));
         let frame = note_of(ui, bottom, Align2::RIGHT_BOTTOM, job);
         bottom.y = frame.top() - 4.0;
     }
@@ -69,18 +69,13 @@ pub fn errors(ui: &Ui, whole: Rect, session: &Session) {
 /// A line of small text on a quiet ground.
 pub fn note(ui: &Ui, position: Pos2, anchor: Align2, text: &str) {
     let font_id = egui::TextStyle::Small.resolve(ui.style());
-    note_of(
-        ui,
-        position,
-        anchor,
-        LayoutJob::simple_singleline(text.to_owned(), font_id, ui.visuals().text_color()),
-    );
+    note_of(ui, position, anchor, LayoutJob::simple_singleline(text.to_owned(), font_id, colors::TEXT));
 }
 
 fn note_of(ui: &Ui, position: Pos2, anchor: Align2, job: LayoutJob) -> Rect {
     let galley = ui.painter().layout_job(job);
     let frame = anchor.anchor_size(position, galley.size() + Vec2::new(16.0, 8.0));
-    ui.painter().rect_filled(frame, 6.0, colors::overlay_fill(ui.visuals()));
-    ui.painter().galley(frame.min + Vec2::new(8.0, 4.0), galley, ui.visuals().text_color());
+    ui.painter().rect_filled(frame, 6.0, colors::OVERLAY);
+    ui.painter().galley(frame.min + Vec2::new(8.0, 4.0), galley, colors::TEXT);
     frame
 }

@@ -2,7 +2,6 @@
 
 use egui::{Align2, Area, Id, Order, Rect, RichText, Ui, Vec2};
 
-use super::colors;
 use crate::scene::{AnnotationState, ObjectId, PhotoId};
 use crate::session::{Command, Session};
 use crate::ui::{Asked, Surroundings, theme};
@@ -27,7 +26,7 @@ pub fn draw(ui: &Ui, rect: Rect, session: &Session, around: &Surroundings<'_>, a
         .fixed_pos(rect.center_top() + Vec2::new(0.0, top))
         .interactable(hint.place.is_some())
         .show(ui.ctx(), |ui| {
-            colors::overlay_frame(ui.visuals()).show(ui, |ui| {
+            theme::overlay_frame().show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(hint.text));
                     if let Some((photo, object)) = hint.place

@@ -152,21 +152,15 @@ fn cursor_icon(ui: &Ui, response: &Response, pane: Pane, session: &Session, arou
     }
 }
 
-/// Colours of what lies over a view; read on any photo, in either theme.
+/// Colours of what lies over a view: dark grounds and light text in either theme, for photos know none.
 mod colors {
-    use egui::{Color32, Frame, Margin, Visuals};
+    use egui::Color32;
 
     /// x, y, z.
     pub const AXES: [Color32; 3] =
         [Color32::from_rgb(235, 85, 80), Color32::from_rgb(95, 195, 90), Color32::from_rgb(240, 190, 60)];
     pub const VIEW_HANDLES: Color32 = Color32::from_rgb(235, 238, 243);
     pub const SHADE: Color32 = Color32::from_black_alpha(110);
-
-    pub fn overlay_fill(visuals: &Visuals) -> Color32 {
-        visuals.window_fill.gamma_multiply(0.88)
-    }
-
-    pub fn overlay_frame(visuals: &Visuals) -> Frame {
-        Frame::NONE.fill(overlay_fill(visuals)).corner_radius(6).inner_margin(Margin::symmetric(8, 4))
-    }
+    pub const OVERLAY: Color32 = Color32::from_black_alpha(170);
+    pub const TEXT: Color32 = Color32::from_rgb(222, 226, 233);
 }

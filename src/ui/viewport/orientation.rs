@@ -38,7 +38,7 @@ fn widget(ui: &mut Ui, view: &SceneView, asked: &mut Asked) {
     let responses: Vec<Response> = ends.iter().map(|end| interact(ui, end)).collect();
     let lit = responses.iter().any(Response::hovered) || ball.hovered() || ball.dragged();
     if lit {
-        let fill = colors::overlay_fill(ui.visuals()).gamma_multiply(0.7);
+        let fill = colors::OVERLAY.gamma_multiply(0.7);
         ui.painter().circle_filled(rect.center(), SIDE / 2.0, fill);
     }
     for (end, response) in ends.iter().zip(&responses) {
@@ -87,19 +87,15 @@ fn draw_end(ui: &Ui, center: Pos2, end: &End, hovered: bool) {
         painter.line_segment([center, end.position], Stroke::new(2.5, color));
         painter.circle_filled(end.position, END_RADIUS, color);
     } else {
-        painter.circle_filled(end.position, END_RADIUS - 1.0, colors::overlay_fill(ui.visuals()));
+        painter.circle_filled(end.position, END_RADIUS - 1.0, colors::OVERLAY);
         painter.circle_stroke(end.position, END_RADIUS - 1.0, Stroke::new(1.6, color));
     }
     if hovered {
-        painter.circle_stroke(
-            end.position,
-            END_RADIUS + 0.5,
-            Stroke::new(2.0, ui.visuals().strong_text_color()),
-        );
+        painter.circle_stroke(end.position, END_RADIUS + 0.5, Stroke::new(2.0, Color32::WHITE));
     }
     if is_positive || hovered {
         let letter = end.view.axis_name().trim_start_matches('+');
-        let text_color = if is_positive { Color32::from_gray(20) } else { ui.visuals().text_color() };
+        let text_color = if is_positive { Color32::from_gray(20) } else { colors::TEXT };
         let font = FontId::proportional(if is_positive { 11.5 } else { 9.5 });
         painter.text(end.position, Align2::CENTER_CENTER, letter, font, text_color);
     }
