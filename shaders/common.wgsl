@@ -1,6 +1,7 @@
 // What every pass knows: the camera, the part of its image that fills the target, the target, and how things are shown.
 
 struct Frame {
+    // To the clip space of the window
     clip_from_eye: mat4x4<f32>,
     // The part of the `image` frame that fills the target: min x, min y, width, height, in photo pixels.
     image_rect: vec4<f32>,
@@ -17,17 +18,16 @@ struct Frame {
     // Half the outline's width in target pixels (0: no outline), the same for the selected object, and for references
     // (0: there are none), the length of their dashes
     outline: vec4<f32>,
-    // Target pixels: min x, min y, max x, max y of where outlines can be
-    outlined: vec4<f32>,
     // Brightness, factors of contrast and saturation, 1 if any of them changes anything
     adjustment: vec4<f32>,
-    // 1 if there is an overlay, where the wipe is in target pixels, half the width of its line (0: no wipe), 1 for the
-    // difference in place of the overlay
+    // 1 if there is an overlay, where the wipe is in target pixels, half the width of its line (0: no wipe), 0
     shown: vec4<f32>,
-    // 1 if there are masks, 1 for outlines of what is hidden, 1 for a free view, the mode (Look's order)
+    // 1 if there are masks, 1 for outlines of what is hidden, 0, the mode (Look's order)
     more: vec4<f32>,
     // The nearest depth in mm, 1 / the range of depths, the width of mesh edges in target pixels, 0
     lines: vec4<f32>,
+    // The part of the target that meshes are drawn for: its corner and size in target pixels
+    window: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

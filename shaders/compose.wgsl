@@ -10,11 +10,37 @@
 @group(1) @binding(6) var hidden_id_texture: texture_2d<f32>;
 @group(1) @binding(7) var backdrop_texture: texture_2d<f32>;
 
+// Software renderers run every branch of a shader for every pixel, so the parts of a picture are draws of their own: what
+// lies below over the whole target, overlay and outlines over the window that they are in, and the line of a wipe.
+
+// The target's corners as positions: (0, 0) is its top left, (1, 1) its bottom right.
+fn target_corner(place: vec2<f32>) -> vec4<f32> {
+    return vec4<f32>(place.x * 2.0 - 1.0, 1.0 - place.y * 2.0, 0.0, 1.0);
+}
+
+// Corners of two triangles.
+fn rectangle_corner(index: u32) -> vec2<f32> {
+    let corner = select(index, 6u - index, index > 2u);
+    return vec2<f32>(f32(corner & 1u), f32(corner >> 1u));
+}
+
+// One triangle that covers the target.
 @vertex
-fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // One triangle that covers the target.
-    let corner = vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u));
-    return vec4<f32>(corner * 2.0 - 1.0, 0.0, 1.0);
+fn vs_target(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return target_corner(vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u)));
+}
+
+@vertex
+fn vs_window(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let place = frame.window.xy + rectangle_corner(index) * frame.window.zw;
+    return target_corner(place / frame.target_rect.zw);
+}
+
+@vertex
+fn vs_wipe(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let corner = rectangle_corner(index);
+    let reach = 2.0 * frame.shown.z + 1.0;
+    return target_corner(vec2<f32>((frame.shown.y + (corner.x * 2.0 - 1.0) * reach) / frame.target_rect.z, corner.y));
 }
 
 fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
@@ -70,64 +96,82 @@ fn outline_at(ids: texture_2d<f32>, texel: vec2<i32>, half_widths: vec2<f32>) ->
     return best;
 }
 
-fn with_overlay(below: vec3<f32>, texel: vec2<i32>) -> vec3<f32> {
-    if (frame.shown.x < 0.5) {
-        return below;
-    }
-    let overlay = textureLoad(overlay_texture, texel, 0);
-    if (frame.shown.w > 0.5) {
-        // Drawn opaque for this, so alpha is how much of the pixel the meshes cover.
-        let own = overlay.rgb / max(overlay.a, 1e-3);
-        return mix(below, abs(below - own), overlay.a * frame.background.a);
-    }
-    return below * (1.0 - overlay.a * frame.background.a) + overlay.rgb * frame.background.a;
+// A colour over a premultiplied one.
+fn over(below: vec4<f32>, color: vec3<f32>, alpha: f32) -> vec4<f32> {
+    return vec4<f32>(color * alpha, alpha) + below * (1.0 - alpha);
 }
 
-fn with_outlines(below: vec3<f32>, target_position: vec2<f32>, texel: vec2<i32>) -> vec3<f32> {
-    let within = all(target_position >= frame.outlined.xy) && all(target_position <= frame.outlined.zw);
-    if (!within) {
-        return below;
-    }
+fn with_outlines(below: vec4<f32>, target_position: vec2<f32>, texel: vec2<i32>) -> vec4<f32> {
     var color = below;
     if (frame.more.y > 0.5) {
         let line = outline_at(hidden_id_texture, texel, frame.outline.xx);
-        color = mix(color, line.rgb, line.a * 0.75);
+        color = over(color, line.rgb, line.a * 0.75);
     }
     if (frame.outline.x > 0.0) {
         let line = outline_at(id_texture, texel, frame.outline.xy);
-        color = mix(color, line.rgb, line.a);
+        color = over(color, line.rgb, line.a);
     }
     if (frame.outline.z > 0.0) {
         // References are dashed: told apart by more than colour.
         let dash = fract((target_position.x + target_position.y) / (2.0 * frame.outline.w));
         let ghost = outline_at(ghost_texture, texel, frame.outline.zz);
-        color = mix(color, ghost.rgb, ghost.a * select(0.0, 1.0, dash < 0.6));
+        color = over(color, ghost.rgb, ghost.a * select(0.0, 1.0, dash < 0.6));
     }
     return color;
 }
 
-@fragment
-fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let target_position = position.xy - frame.target_rect.xy;
-    let last = vec2<i32>(frame.target_rect.zw) - 1;
-    let texel = clamp(vec2<i32>(floor(target_position)), vec2<i32>(0), last);
+fn window_texel(target_position: vec2<f32>) -> vec2<i32> {
+    return vec2<i32>(clamp(floor(target_position) - frame.window.xy, vec2<f32>(0.0), frame.window.zw - 1.0));
+}
 
-    var color: vec3<f32>;
-    if (frame.more.z > 0.5) {
-        color = backdrop_color(target_position, texel);
-    } else {
-        color = photo_color(target_position);
+@fragment
+fn fs_photo(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return vec4<f32>(photo_color(position.xy - frame.target_rect.xy), 1.0);
+}
+
+@fragment
+fn fs_backdrop(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let target_position = position.xy - frame.target_rect.xy;
+    return vec4<f32>(backdrop_color(target_position, window_texel(target_position)), 1.0);
+}
+
+// Overlay and outlines, premultiplied, to be blended over what lies below.
+@fragment
+fn fs_overlay(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let target_position = position.xy - frame.target_rect.xy;
+    // A pixel is on one side of a wipe or the other by its centre.
+    if (frame.shown.z > 0.0 && target_position.x >= frame.shown.y) {
+        discard;
     }
-    // A pixel is on one side or the other by its centre.
-    if (frame.shown.z <= 0.0 || target_position.x < frame.shown.y) {
-        color = with_overlay(color, texel);
-        color = with_outlines(color, target_position, texel);
+    let texel = window_texel(target_position);
+    var color = vec4<f32>(0.0);
+    if (frame.shown.x > 0.5) {
+        color = textureLoad(overlay_texture, texel, 0) * frame.background.a;
     }
-    if (frame.shown.z > 0.0) {
-        // White with a dark rim: seen on every photo.
-        let distance = abs(target_position.x - frame.shown.y);
-        color = mix(color, vec3<f32>(0.0), 0.45 * clamp(2.0 * frame.shown.z + 0.5 - distance, 0.0, 1.0));
-        color = mix(color, vec3<f32>(1.0), clamp(frame.shown.z + 0.5 - distance, 0.0, 1.0));
+    return with_outlines(color, target_position, texel);
+}
+
+// How overlay and photo differ, in place of the overlay.
+@fragment
+fn fs_difference(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let target_position = position.xy - frame.target_rect.xy;
+    if (frame.shown.z > 0.0 && target_position.x >= frame.shown.y) {
+        discard;
     }
-    return vec4<f32>(color, 1.0);
+    let texel = window_texel(target_position);
+    let overlay = textureLoad(overlay_texture, texel, 0);
+    // Drawn opaque for this, so alpha is how much of the pixel the meshes cover.
+    let own = overlay.rgb / max(overlay.a, 1e-3);
+    let alpha = overlay.a * frame.background.a * frame.shown.x;
+    let difference = abs(photo_color(target_position) - own);
+    return with_outlines(vec4<f32>(difference * alpha, alpha), target_position, texel);
+}
+
+// White with a dark rim: seen on every photo.
+@fragment
+fn fs_wipe(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let distance = abs(position.x - frame.target_rect.x - frame.shown.y);
+    let rim = 0.45 * clamp(2.0 * frame.shown.z + 0.5 - distance, 0.0, 1.0);
+    let line = clamp(frame.shown.z + 0.5 - distance, 0.0, 1.0);
+    return over(vec4<f32>(0.0, 0.0, 0.0, rim), vec3<f32>(1.0), line);
 }

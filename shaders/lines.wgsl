@@ -39,7 +39,7 @@ fn line_vertex(
     if (b.z < near) {
         b = mix(from_eye, to_eye, step);
     }
-    let half_size = frame.target_rect.zw * 0.5;
+    let half_size = frame.window.zw * 0.5;
     let a_clip = clip_position(a);
     let b_clip = clip_position(b);
     let a_px = a_clip.xy / a_clip.w * half_size;

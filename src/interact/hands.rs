@@ -90,6 +90,11 @@ impl Hands {
         self.photo.is_dragging_object() || self.scene.is_dragging_object()
     }
 
+    /// Do objects or the free eye move under the hand?
+    pub fn is_moving(&self) -> bool {
+        self.is_dragging_object() || self.scene.has_press() || self.scene_view.is_animating()
+    }
+
     /// The handle that is held in a view.
     pub fn handle_drag(&self, pane: Pane) -> Option<&GizmoDrag> {
         self.gestures(pane).handle_drag()

@@ -180,6 +180,10 @@ impl SceneView {
         part < 1.0
     }
 
+    pub fn is_animating(&self) -> bool {
+        self.animation.is_some()
+    }
+
     /// The size of the viewport in physical pixels.
     pub fn viewport(&self) -> DVec2 {
         self.viewport

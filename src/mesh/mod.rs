@@ -3,6 +3,7 @@
 //! This room knows nothing of photos, poses in a scene, or the GPU. Nothing here reads a file: loaders take bytes.
 
 mod bvh;
+mod coarse;
 mod edges;
 mod error;
 mod gltf;
@@ -23,6 +24,7 @@ use glam::{DAffine3, DVec3, Vec3};
 use crate::math::{BoundingSphere, Bounds};
 
 pub use bvh::Bvh;
+pub use coarse::{CoarseMesh, coarse_mesh};
 pub use edges::{MeshEdges, mesh_edges};
 pub use error::{Format, MeshError, Place};
 pub use load::{LoadedMesh, load};

@@ -8,9 +8,9 @@ use wgpu::util::DeviceExt;
 
 use super::lines::EdgeInstance;
 use super::surfaces::Surfaces;
+use super::uniforms::draws_edges;
 use super::{Gpu, Usage, ViewSlot};
-use crate::mesh::{Mesh, ShadingGroup, ShadingVertex, mesh_edges, shading_vertices};
-use crate::photo::Pixels;
+use crate::mesh::{CoarseMesh, Mesh, ShadingGroup, ShadingVertex, coarse_mesh, mesh_edges, shading_vertices};
 use crate::scene::{MeshAsset, OverlayMode};
 
 /// A mesh that none of a view's last so many pictures has shown, nor any other view's, is dropped.
@@ -70,6 +70,8 @@ pub struct Meshes {
 struct Kept {
     mesh: Arc<MeshAsset>,
     buffers: MeshBuffers,
+    /// Of a mesh of very many triangles, to be drawn while things move.
+    coarse: Option<(CoarseMesh, MeshBuffers)>,
     /// The number of the last picture that showed it, of each view.
     last_pictures: [Option<u64>; ViewSlot::COUNT],
 }
@@ -97,19 +99,43 @@ impl Meshes {
         let picture = Some(self.pictures[slot as usize]);
         let position = self.kept.iter().position(|kept| Arc::ptr_eq(&kept.mesh, mesh));
         let position = position.unwrap_or_else(|| {
-            let buffers = upload(gpu, usage, &mesh.mesh, surfaces);
-            self.kept.push(Kept { mesh: mesh.clone(), buffers, last_pictures: [None; ViewSlot::COUNT] });
+            self.kept.push(Kept::new(gpu, usage, mesh, surfaces));
             self.kept.len() - 1
         });
         let kept = &mut self.kept[position];
         kept.last_pictures[slot as usize] = picture;
-        if matches!(mode, OverlayMode::Edges | OverlayMode::Wireframe) {
+        if draws_edges(mode) {
             kept.buffers.edges.get_or_insert_with(|| upload_edges(gpu, usage, &mesh.mesh));
+            if let Some((coarse, buffers)) = &mut kept.coarse {
+                buffers.edges.get_or_insert_with(|| upload_edges(gpu, usage, &coarse.mesh));
+            }
         }
     }
 
-    pub fn get(&self, mesh: &Arc<MeshAsset>) -> Option<&MeshBuffers> {
-        self.kept.iter().find(|kept| Arc::ptr_eq(&kept.mesh, mesh)).map(|kept| &kept.buffers)
+    /// A mesh's buffers: those of its coarse copy where the caller can do with an error of so many millimetres, and there
+    /// is one.
+    pub fn get(&self, mesh: &Arc<MeshAsset>, tolerance_mm: f64) -> Option<&MeshBuffers> {
+        let kept = self.kept.iter().find(|kept| Arc::ptr_eq(&kept.mesh, mesh))?;
+        let coarse = kept.coarse.as_ref().filter(|(coarse, _)| coarse.cell_mm <= tolerance_mm);
+        Some(coarse.map_or(&kept.buffers, |(_, buffers)| buffers))
+    }
+}
+
+impl Kept {
+    fn new(gpu: &Gpu, usage: &Usage, mesh: &Arc<MeshAsset>, surfaces: &Surfaces) -> Self {
+        let textures = mesh.mesh.paint().map_or(&[][..], |paint| &paint.textures);
+        let textures: Vec<_> =
+            textures.iter().map(|pixels| surfaces.of_texture(gpu, usage, pixels)).collect();
+        let coarse = coarse_mesh(&mesh.mesh).map(|coarse| {
+            let buffers = upload(gpu, usage, &coarse.mesh, &textures);
+            (coarse, buffers)
+        });
+        Self {
+            mesh: mesh.clone(),
+            buffers: upload(gpu, usage, &mesh.mesh, &textures),
+            coarse,
+            last_pictures: [None; ViewSlot::COUNT],
+        }
     }
 }
 
@@ -141,11 +167,11 @@ impl VertexAttributes {
     }
 }
 
-fn upload(gpu: &Gpu, usage: &Usage, mesh: &Mesh, surfaces: &Surfaces) -> MeshBuffers {
+fn upload(gpu: &Gpu, usage: &Usage, mesh: &Mesh, textures: &[wgpu::BindGroup]) -> MeshBuffers {
     let shading = shading_vertices(mesh);
     let group = |group: &ShadingGroup| SurfaceGroup {
         indices: group.indices.clone(),
-        texture: texture_of(mesh, group).map(|pixels| surfaces.of_texture(gpu, usage, pixels)),
+        texture: group.texture.and_then(|texture| textures.get(texture as usize)).cloned(),
     };
     let positions: Vec<[f32; 3]> = shading.vertices.iter().map(|vertex| vertex.position).collect();
     let attributes: Vec<VertexAttributes> = shading.vertices.iter().map(VertexAttributes::new).collect();
@@ -164,11 +190,6 @@ fn upload(gpu: &Gpu, usage: &Usage, mesh: &Mesh, surfaces: &Surfaces) -> MeshBuf
         groups: shading.groups.iter().map(group).collect(),
         edges: None,
     }
-}
-
-fn texture_of<'a>(mesh: &'a Mesh, group: &ShadingGroup) -> Option<&'a Pixels> {
-    let pixels = mesh.paint()?.textures.get(group.texture? as usize)?;
-    Some(pixels)
 }
 
 fn upload_edges(gpu: &Gpu, usage: &Usage, mesh: &Mesh) -> EdgeBuffers {

@@ -16,6 +16,7 @@ mod pipelines;
 mod plane;
 mod readback;
 mod renderer;
+mod scene_picture;
 mod surfaces;
 mod targets;
 mod uniforms;
@@ -30,4 +31,5 @@ pub use picture::{Item, LineWidths, PhotoLayer, PhotoPlane, Picture, Subject, Su
 pub use pipelines::{SHADERS, ShaderSource};
 pub use readback::{PixelsPending, ReadBackError};
 pub use renderer::{Layer, Renderer};
+pub use scene_picture::{FreeView, OtherCamera, scene_picture_of};
 pub use view::ViewSlot;

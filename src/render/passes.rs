@@ -1,11 +1,12 @@
 //! The passes that fill a view's targets: backdrop, overlay, ids, hidden ids, ghosts.
 
-use super::extent::sphere_eye;
-use super::meshes::Meshes;
+use super::extent::{sphere_eye, tolerance_mm};
+use super::meshes::{MeshBuffers, Meshes};
 use super::pipelines::{PipelineKind, Pipelines};
 use super::plane::PLANE_INDEX_COUNT;
 use super::surfaces::Surfaces;
 use super::targets::Targets;
+use super::uniforms::draws_edges;
 use super::view::View;
 use super::{Item, Picture, Usage};
 use crate::scene::OverlayMode;
@@ -21,6 +22,8 @@ pub struct Passes<'a> {
     pub view: &'a View,
     pub targets: &'a Targets,
     pub picture: &'a Picture,
+    /// Target pixels per pixel of the eye's image.
+    pub pixels_per_photo_pixel: f64,
 }
 
 /// Which objects cover which, where depth does not decide.
@@ -61,7 +64,7 @@ impl Passes<'_> {
         let picture = self.picture;
         if picture.fills() {
             match picture.look.mode {
-                OverlayMode::Edges | OverlayMode::Wireframe => self.draw_mesh_edges(pass),
+                mode if draws_edges(mode) => self.draw_mesh_edges(pass),
                 mode if picture.look.x_ray => {
                     let kinds = [PipelineKind::Depth, fill_kind(mode, true)];
                     self.draw_in_order(pass, Order::NearestLast, &kinds);
@@ -91,7 +94,7 @@ impl Passes<'_> {
     fn draw_edges_of_items(&self, pass: &mut wgpu::RenderPass<'_>, kind: PipelineKind) {
         self.set(pass, kind);
         for (number, item) in self.picture.items.iter().enumerate() {
-            let buffers = self.meshes.get(&item.mesh);
+            let buffers = self.buffers(item);
             let Some(edges) = buffers.and_then(|buffers| buffers.edges(self.picture.look.mode)) else {
                 continue;
             };
@@ -128,7 +131,7 @@ impl Passes<'_> {
     fn draw_items(&self, pass: &mut wgpu::RenderPass<'_>, kind: PipelineKind, items: &[Item], first: usize) {
         self.set(pass, kind);
         for (number, item) in (first..).zip(items) {
-            let Some(buffers) = self.meshes.get(&item.mesh) else { continue };
+            let Some(buffers) = self.buffers(item) else { continue };
             self.set_object(pass, number);
             pass.set_vertex_buffer(0, buffers.positions.slice(..));
             pass.set_index_buffer(buffers.indices.slice(..), wgpu::IndexFormat::Uint32);
@@ -146,6 +149,10 @@ impl Passes<'_> {
                 self.usage.add_draw(group.indices.len() as u32 / 3);
             }
         }
+    }
+
+    fn buffers(&self, item: &Item) -> Option<&MeshBuffers> {
+        self.meshes.get(&item.mesh, tolerance_mm(self.picture, item, self.pixels_per_photo_pixel))
     }
 
     fn draw_plane(&self, pass: &mut wgpu::RenderPass<'_>, kind: PipelineKind) {

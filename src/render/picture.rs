@@ -32,6 +32,8 @@ pub struct Picture {
     pub surroundings: Option<Surroundings>,
     /// Around the photo.
     pub background: Rgb,
+    /// While a gesture moves things: meshes of very many triangles are drawn coarser.
+    pub in_motion: bool,
 }
 
 /// Pixels that lie under the meshes; shared, and the same where they are at the same place in memory.
@@ -115,6 +117,13 @@ impl LineWidths {
             wipe_px: 1.5 * pixels_per_point,
         }
     }
+
+    /// Of the lines that belong to meshes.
+    pub(super) fn widest_px(&self) -> f32 {
+        [self.outline_px, self.selected_outline_px, self.ghost_px, self.edge_px, self.wireframe_px]
+            .into_iter()
+            .fold(0.0, f32::max)
+    }
 }
 
 /// What a picture is made from.
@@ -171,6 +180,7 @@ pub fn picture_of(subject: &Subject<'_>) -> Option<Picture> {
         widths: LineWidths::for_scale(subject.pixels_per_point),
         surroundings: None,
         background: Rgb([24, 26, 31]),
+        in_motion: false,
     })
 }
 

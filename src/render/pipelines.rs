@@ -57,14 +57,17 @@ pub enum PipelineKind {
     LinesBefore,
     /// Lines over everything.
     LinesInFront,
-    /// Into our own targets.
-    Compose,
-    /// Into the interface's render pass.
-    ComposeOnScreen,
+    /// What is composed: the photo, or what is around objects in a free view; overlay and outlines, or the difference
+    /// with outlines; and a wipe's line.
+    Photo,
+    Backdrop,
+    Overlay,
+    Difference,
+    Wipe,
 }
 
 impl PipelineKind {
-    const COUNT: usize = Self::ComposeOnScreen as usize + 1;
+    const COUNT: usize = Self::Wipe as usize + 1;
     const ALL: [Self; Self::COUNT] = [
         Self::Lit,
         Self::Colored,
@@ -82,9 +85,16 @@ impl PipelineKind {
         Self::PlaneBefore,
         Self::LinesBefore,
         Self::LinesInFront,
-        Self::Compose,
-        Self::ComposeOnScreen,
+        Self::Photo,
+        Self::Backdrop,
+        Self::Overlay,
+        Self::Difference,
+        Self::Wipe,
     ];
+
+    fn is_composed(self) -> bool {
+        self as usize >= Self::Photo as usize
+    }
 
     /// Whether it wants a mesh's normals, colours and texture coordinates.
     pub fn reads_attributes(self) -> bool {
@@ -113,8 +123,12 @@ pub struct Pipelines {
     plane: wgpu::ShaderModule,
     compose: wgpu::ShaderModule,
     screen_format: wgpu::TextureFormat,
-    made: [OnceCell<wgpu::RenderPipeline>; PipelineKind::COUNT],
+    made: Made,
+    /// Those that compose, once more for the interface's render pass.
+    made_on_screen: Made,
 }
+
+type Made = [OnceCell<wgpu::RenderPipeline>; PipelineKind::COUNT];
 
 impl Pipelines {
     pub fn new(device: &wgpu::Device, screen_format: wgpu::TextureFormat) -> Self {
@@ -140,21 +154,31 @@ impl Pipelines {
             compose_layout,
             screen_format,
             made: [const { OnceCell::new() }; PipelineKind::COUNT],
+            made_on_screen: [const { OnceCell::new() }; PipelineKind::COUNT],
         }
     }
 
+    /// For our own targets.
     pub fn get(&self, kind: PipelineKind) -> &wgpu::RenderPipeline {
-        self.made[kind as usize].get_or_init(|| self.make(kind))
+        self.made[kind as usize].get_or_init(|| self.make(kind, COLOR_FORMAT))
+    }
+
+    /// For the interface's render pass.
+    pub fn get_on_screen(&self, kind: PipelineKind) -> &wgpu::RenderPipeline {
+        self.made_on_screen[kind as usize].get_or_init(|| self.make(kind, self.screen_format))
     }
 
     /// Makes all that were not used yet: what a test of a backend wants to know.
     pub fn make_all(&self) {
         for kind in PipelineKind::ALL {
             self.get(kind);
+            if kind.is_composed() {
+                self.get_on_screen(kind);
+            }
         }
     }
 
-    fn make(&self, kind: PipelineKind) -> wgpu::RenderPipeline {
+    fn make(&self, kind: PipelineKind, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
         let recipe = Recipe::of(kind);
         let (module, layout) = match recipe.shader {
             Shader::Mesh => (&self.mesh, &self.object_pipeline_layout),
@@ -163,7 +187,6 @@ impl Pipelines {
             Shader::Plane => (&self.plane, &self.surface_pipeline_layout),
             Shader::Compose => (&self.compose, &self.compose_pipeline_layout),
         };
-        let format = if kind == PipelineKind::ComposeOnScreen { self.screen_format } else { COLOR_FORMAT };
         let target = wgpu::ColorTargetState {
             format,
             blend: recipe.blend,
@@ -316,18 +339,22 @@ impl Recipe {
             vertex: "vs_plane",
             fragment: Some("fs_plane"),
             buffers: PLANE_VERTICES,
+            // Its own border runs on it.
+            depth: Some(DepthUse::SOLID_BEHIND_LINES),
             blend: Some(OVER),
             ..lit
         };
-        let compose = Self {
+        let composed = Self {
             shader: Shader::Compose,
-            vertex: "vs_main",
-            fragment: Some("fs_main"),
+            vertex: "vs_target",
+            fragment: Some("fs_photo"),
             buffers: &[],
             depth: None,
             blend: None,
             samples: 1,
         };
+        let overlay =
+            Self { vertex: "vs_window", fragment: Some("fs_overlay"), blend: Some(OVER), ..composed };
         match kind {
             Kind::Lit => lit,
             Kind::Colored => colored,
@@ -344,10 +371,14 @@ impl Recipe {
             }
             Kind::PlaneBehind => plane,
             Kind::LinesBehind => lines,
-            Kind::PlaneBefore => Self { depth: Some(DepthUse::SEEN), blend: Some(ATOP), ..plane },
+            Kind::PlaneBefore => Self { blend: Some(ATOP), ..plane },
             Kind::LinesBefore => Self { blend: Some(ATOP), ..lines },
             Kind::LinesInFront => Self { depth: Some(DepthUse::IGNORED), ..lines },
-            Kind::Compose | Kind::ComposeOnScreen => compose,
+            Kind::Photo => composed,
+            Kind::Backdrop => Self { fragment: Some("fs_backdrop"), ..composed },
+            Kind::Overlay => overlay,
+            Kind::Difference => Self { fragment: Some("fs_difference"), ..overlay },
+            Kind::Wipe => Self { vertex: "vs_wipe", fragment: Some("fs_wipe"), ..overlay },
         }
     }
 }

@@ -98,7 +98,7 @@ impl Renderer {
 
     /// Composes the prepared picture within a render pass of the screen's format.
     pub fn paint(&self, slot: ViewSlot, pass: &mut wgpu::RenderPass<'_>) {
-        self.compose(slot, pass, PipelineKind::ComposeOnScreen);
+        self.compose(slot, pass, |kind| self.pipelines.get_on_screen(kind));
     }
 
     /// Draws a picture off screen and starts reading it back. What is on screen stays as it is.
@@ -114,7 +114,7 @@ impl Renderer {
                 composed = picture_target(&self.gpu.device, size);
                 let view = composed.create_view(&wgpu::TextureViewDescriptor::default());
                 let mut pass = begin_pass(&mut encoder, "picture", &view, None, None);
-                self.compose(slot, &mut pass, PipelineKind::Compose);
+                self.compose(slot, &mut pass, |kind| self.pipelines.get(kind));
                 drop(pass);
                 &composed
             }
@@ -137,8 +137,8 @@ impl Renderer {
         let picture = &wanted.picture;
         self.upload_meshes(slot, picture);
         let view = &mut self.views[slot as usize];
-        view.fit_targets(&self.gpu, picture, wanted.size);
-        view.upload(&self.gpu, &self.usage, &self.pipelines, picture, (wanted.corner, wanted.size));
+        let window = view.fit_targets(&self.gpu, &wanted);
+        view.upload(&self.gpu, &self.usage, &self.pipelines, &wanted, &window);
         self.bind_textures(slot, picture, wanted.size);
         let view = &self.views[slot as usize];
         if let Some(targets) = &view.targets {
@@ -151,6 +151,7 @@ impl Renderer {
                 view,
                 targets,
                 picture,
+                pixels_per_photo_pixel: f64::from(wanted.size[0]) / picture.rect.size().x,
             };
             passes.record(encoder, wanted.with_ids);
         }
@@ -200,13 +201,39 @@ impl Renderer {
         }));
     }
 
-    fn compose(&self, slot: ViewSlot, pass: &mut wgpu::RenderPass<'_>, kind: PipelineKind) {
+    fn compose<'a>(
+        &'a self,
+        slot: ViewSlot,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipeline: impl Fn(PipelineKind) -> &'a wgpu::RenderPipeline,
+    ) {
         let view = &self.views[slot as usize];
-        let Some(group) = &view.compose_group else { return };
-        pass.set_pipeline(self.pipelines.get(kind));
+        let (Some(group), Some(drawn)) = (&view.compose_group, &view.drawn) else { return };
         pass.set_bind_group(0, &view.frame_group, &[]);
         pass.set_bind_group(1, group, &[]);
-        pass.draw(0..3, 0..1);
-        self.usage.add_draw(1);
+        for (kind, vertices) in composed_parts(&drawn.picture) {
+            pass.set_pipeline(pipeline(kind));
+            pass.draw(0..vertices, 0..1);
+            self.usage.add_draw(vertices / 3);
+        }
     }
+}
+
+/// What a picture is composed of, from below, and how many vertices each part has.
+fn composed_parts(picture: &Picture) -> impl Iterator<Item = (PipelineKind, u32)> {
+    let is_free = picture.surroundings.is_some();
+    let below = if is_free { PipelineKind::Backdrop } else { PipelineKind::Photo };
+    // In a free view the photo is somewhere else than the meshes, and there is nothing to take a difference to.
+    let is_difference = picture.look.difference && !is_free && picture.fills();
+    let overlay = if is_difference { PipelineKind::Difference } else { PipelineKind::Overlay };
+    let has_overlay = picture.fills() || picture.outlines() || picture.shows_ghosts();
+    let has_lines = picture.lines().iter().any(|line| line.in_front);
+    let has_wipe = picture.look.wipe.is_some() && picture.shows_meshes();
+    [
+        Some((below, 3)),
+        (has_overlay || has_lines).then_some((overlay, 6)),
+        has_wipe.then_some((PipelineKind::Wipe, 6)),
+    ]
+    .into_iter()
+    .flatten()
 }

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::extent::{depth_range_mm, outlined_px};
+use super::extent::{Window, depth_range_mm};
 use super::{Item, PhotoPlane, Picture};
 use crate::math::{Pose, clip_from_camera};
 use crate::scene::{OverlayMode, PhotoAdjustment, Rgb};
@@ -24,11 +24,11 @@ pub struct FrameUniform {
     photo: [f32; 4],
     background: [f32; 4],
     outline: [f32; 4],
-    outlined: [f32; 4],
     adjustment: [f32; 4],
     shown: [f32; 4],
     more: [f32; 4],
     lines: [f32; 4],
+    window: [f32; 4],
 }
 
 #[repr(C)]
@@ -42,13 +42,15 @@ pub struct ObjectUniform {
 }
 
 impl FrameUniform {
-    /// For a target of `size` pixels whose corner is at `corner` in its framebuffer.
-    pub fn new(picture: &Picture, corner: [u32; 2], size: [u32; 2]) -> Self {
+    /// For a target of `size` pixels whose corner is at `corner` in its framebuffer, and a window in it.
+    pub fn new(picture: &Picture, corner: [u32; 2], size: [u32; 2], window: &Window) -> Self {
         let rect = picture.rect;
         let lens = picture.camera.distortion;
         let [red, green, blue] = unit_color(picture.background);
         Self {
-            clip_from_eye: clip_from_camera(&picture.camera, &rect).as_mat4().to_cols_array_2d(),
+            clip_from_eye: clip_from_camera(&picture.camera, &window.image_rect(picture, size))
+                .as_mat4()
+                .to_cols_array_2d(),
             image_rect: [rect.min.x, rect.min.y, rect.size().x, rect.size().y].map(|value| value as f32),
             target_rect: [corner[0], corner[1], size[0], size[1]].map(|value| value as f32),
             distortion: [lens.k1, lens.k2, lens.p1, lens.p2].map(|value| value as f32),
@@ -61,16 +63,17 @@ impl FrameUniform {
             photo: photo_part(picture, size),
             background: [red, green, blue, picture.look.overlay_opacity],
             outline: outline_part(picture),
-            outlined: outlined_px(picture, size),
             adjustment: adjustment_part(&picture.look.photo),
             shown: shown_part(picture, size),
             more: [
                 flag(picture.shows_masks()),
                 flag(picture.outlines_hidden()),
-                flag(picture.surroundings.is_some()),
+                0.0,
                 picture.look.mode as u32 as f32,
             ],
             lines: lines_part(picture),
+            window: [window.corner[0], window.corner[1], window.size[0], window.size[1]]
+                .map(|value| value as f32),
         }
     }
 }
@@ -108,7 +111,7 @@ fn shown_part(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
         flag(has_overlay),
         wipe.map_or(0.0, |part| part * size[0] as f32),
         wipe.map_or(0.0, |_| picture.widths.wipe_px / 2.0),
-        flag(picture.look.difference),
+        0.0,
     ]
 }
 
@@ -131,10 +134,12 @@ impl ObjectUniform {
         let center = bounds.center().as_vec3();
         let look = &picture.look;
         // A difference is taken of the meshes' own colours.
-        let opacity = match (look.difference, look.x_ray) {
-            (true, _) => 1.0,
-            (false, true) => item.opacity * X_RAY_OPACITY,
-            (false, false) => item.opacity,
+        let opacity = if look.difference {
+            1.0
+        } else if look.x_ray && !draws_edges(look.mode) {
+            item.opacity * X_RAY_OPACITY
+        } else {
+            item.opacity
         };
         Self {
             eye_from_object: matrix(&picture.eye_from_object(item)),
@@ -153,6 +158,11 @@ impl ObjectUniform {
             ..Self::zeroed()
         }
     }
+}
+
+/// Whether a mode draws a mesh's edges.
+pub fn draws_edges(mode: OverlayMode) -> bool {
+    matches!(mode, OverlayMode::Edges | OverlayMode::Wireframe)
 }
 
 fn matrix(pose: &Pose) -> [[f32; 4]; 4] {

@@ -1,5 +1,6 @@
 //! One place where pictures are drawn: its targets, its uniforms, and what they hold.
 
+use super::extent::Window;
 use super::lines::LineInstance;
 use super::pipelines::Pipelines;
 use super::plane::{PlaneVertex, plane_vertices};
@@ -78,16 +79,24 @@ impl View {
         }
     }
 
-    /// Targets as a picture needs them.
-    pub fn fit_targets(&mut self, gpu: &Gpu, picture: &Picture, size: [u32; 2]) {
+    /// Targets as a picture needs them, and the part of the view that they show. What is read back, and what is around
+    /// the objects of a free view, is as large as the view.
+    pub fn fit_targets(&mut self, gpu: &Gpu, wanted: &Drawn) -> Window {
+        let picture = &wanted.picture;
+        let window = if wanted.with_ids || picture.surroundings.is_some() {
+            Window::whole(wanted.size)
+        } else {
+            Window::around(picture, wanted.size, self.targets.as_ref().map(|targets| targets.kind.size))
+        };
         let kind = TargetsKind {
-            size,
+            size: window.size,
             has_backdrop: picture.surroundings.is_some(),
             has_hidden_ids: picture.outlines_hidden(),
         };
         if self.targets.as_ref().is_none_or(|targets| targets.kind != kind) {
             self.targets = Some(Targets::new(&gpu.device, kind));
         }
+        window
     }
 
     /// Uniforms and lines, whose number depends on what is in the scene, not on how fine its meshes are.
@@ -96,9 +105,10 @@ impl View {
         gpu: &Gpu,
         usage: &Usage,
         pipelines: &Pipelines,
-        picture: &Picture,
-        place: ([u32; 2], [u32; 2]),
+        wanted: &Drawn,
+        window: &Window,
     ) {
+        let Drawn { picture, corner, size, .. } = wanted;
         let items = picture.items.iter().chain(&picture.ghosts);
         let mut objects: Vec<ObjectUniform> = items.map(|item| ObjectUniform::new(picture, item)).collect();
         objects.push(ObjectUniform::of_surroundings(picture, picture.plane()));
@@ -112,7 +122,7 @@ impl View {
             slot[..size_of::<ObjectUniform>()].copy_from_slice(bytemuck::bytes_of(uniform));
         }
         write(gpu, usage, &self.objects, &bytes);
-        let frame = FrameUniform::new(picture, place.0, place.1);
+        let frame = FrameUniform::new(picture, *corner, *size, window);
         write(gpu, usage, &self.frame, bytemuck::bytes_of(&frame));
         self.upload_lines(gpu, usage, picture);
         self.upload_plane(gpu, usage, picture);

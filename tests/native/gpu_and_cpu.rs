@@ -78,7 +78,7 @@ fn compare(renderer: &mut Renderer, camera: &Intrinsics, mesh: &Arc<MeshAsset>, 
     drawn.iou(&expected).unwrap()
 }
 
-fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose) -> Picture {
+pub fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose) -> Picture {
     let item =
         Item { mesh, camera_from_object: pose, color: Rgb([255; 3]), opacity: 1.0, id: 1, selected: false };
     Picture {
@@ -93,6 +93,7 @@ fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: Pose
         widths: LineWidths::for_scale(1.0),
         surroundings: None,
         background: Rgb([0; 3]),
+        in_motion: false,
     }
 }
 
@@ -133,7 +134,7 @@ fn small_discs_are_drawn_where_their_centres_project() {
 }
 
 /// A disc of so many millimetres about the origin, facing the camera.
-fn disc(radius_mm: f32) -> Arc<MeshAsset> {
+pub fn disc(radius_mm: f32) -> Arc<MeshAsset> {
     let count = 96_u32;
     let mut positions_mm = vec![Vec3::ZERO];
     positions_mm.extend((0..count).map(|i| {
@@ -153,7 +154,7 @@ fn disc(radius_mm: f32) -> Arc<MeshAsset> {
 }
 
 /// The brightness-weighted mean of pixel coordinates; the disc has one brightness, so that is its coverage.
-fn centroid(rgba: &[u8], width: usize) -> DVec2 {
+pub fn centroid(rgba: &[u8], width: usize) -> DVec2 {
     let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
     for (index, texel) in rgba.chunks_exact(4).enumerate() {
         let value = f64::from(texel[0]);

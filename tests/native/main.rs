@@ -10,6 +10,7 @@ mod gpu_and_cpu;
 mod images_corpus;
 mod layers;
 mod linemod;
+mod looks;
 mod mesh_corpus;
 mod panels;
 mod scene_view;

@@ -156,9 +156,9 @@ fn cursor_icon(ui: &Ui, response: &Response, pane: Pane, session: &Session, arou
 mod colors {
     use egui::Color32;
 
-    /// x, y, z.
+    /// x, y, z: as the renderer draws them.
     pub const AXES: [Color32; 3] =
-        [Color32::from_rgb(235, 85, 80), Color32::from_rgb(95, 195, 90), Color32::from_rgb(240, 190, 60)];
+        [Color32::from_rgb(244, 72, 72), Color32::from_rgb(84, 208, 96), Color32::from_rgb(88, 148, 255)];
     pub const VIEW_HANDLES: Color32 = Color32::from_rgb(235, 238, 243);
     pub const SHADE: Color32 = Color32::from_black_alpha(110);
     pub const OVERLAY: Color32 = Color32::from_black_alpha(170);

@@ -32,6 +32,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
     };
     let mut picture = picture_of(&subject)?;
     picture.rect = around.hands.photo_view.visible_rect();
+    picture.in_motion = around.hands.is_moving();
     Some(picture)
 }
 

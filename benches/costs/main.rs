@@ -1,5 +1,7 @@
 //! What things cost, each with its ratio to something measured in the same run.
 
+mod frames;
+
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -8,11 +10,19 @@ use pinpose::math::{Intrinsics, Pose, Ray};
 use pinpose::mesh::{Bvh, Mesh, MeshData, load, shading_vertices};
 use pinpose::raster::{PixelRegion, RasterItem, rasterize};
 
+/// Before anything is loaded come the frames: they also tell the memory that the program itself takes.
+const PARTS: [(&str, fn()); 4] =
+    [("frames", frames::frames), ("loading", loading), ("picking", picking), ("rasterizing", rasterizing)];
+
+/// All parts, or those that are named: `cargo bench --bench costs -- frames`.
 fn main() {
     println!("{:<46}{:>12}{:>10}  against", "", "ms", "ratio");
-    loading();
-    picking();
-    rasterizing();
+    let named: Vec<String> = std::env::args().skip(1).filter(|name| !name.starts_with('-')).collect();
+    for (name, part) in PARTS {
+        if named.is_empty() || named.iter().any(|wanted| wanted == name) {
+            part();
+        }
+    }
 }
 
 /// The median of several runs, in milliseconds.
