@@ -28,6 +28,8 @@ fn state_json(state: &PageState) -> Result<Value, JsValue> {
     value["selection"] = json!({"photo": state.photo, "object": state.selected, "tool": state.tool});
     value["viewport"] =
         json!({"zoom": state.zoom, "center": state.center, "rect": state.viewport, "panels": state.panels});
+    value["arrangement"] = json!(state.arrangement);
+    value["sceneViewport"] = json!({"rect": state.scene_viewport});
     value["busy"] = json!(state.busy);
     value["saved"] = json!(state.saved);
     value["question"] = json!(state.question);

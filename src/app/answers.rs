@@ -15,7 +15,7 @@ use crate::platform::{self, FileBytes, PageAnswer, PageCall, PageReply, PageStat
 use crate::render::ExportKind;
 use crate::scene::{Look, ObjectId, OverlayMode, PhotoId, PoseSource};
 use crate::session::{Arrangement, COMMANDS, Command, Panes, Question, Tool};
-use crate::ui::Saving;
+use crate::ui::{self, Saving};
 
 type Answer = Result<PageAnswer, String>;
 
@@ -124,7 +124,7 @@ impl PinPose {
     /// A viewport pixel's place on the page, in CSS pixels. The zoom factor of the interface itself is part of both.
     fn page_from_image(&self, pixel: DVec2) -> Answer {
         let place = self.ui_state.viewport.ok_or("no photo is shown")?;
-        let position = self.view.viewport_from_image(pixel) / f64::from(place.pixels_per_point);
+        let position = self.hands.photo_view.viewport_from_image(pixel) / f64::from(place.pixels_per_point);
         Ok(PageAnswer::Point {
             x: position.x + f64::from(place.rect.left()),
             y: position.y + f64::from(place.rect.top()),
@@ -134,7 +134,7 @@ impl PinPose {
     fn image_from_page(&self, x: f64, y: f64) -> Result<DVec2, String> {
         let place = self.ui_state.viewport.ok_or("no photo is shown")?;
         let offset = DVec2::new(x - f64::from(place.rect.left()), y - f64::from(place.rect.top()));
-        Ok(self.view.image_from_viewport(offset * f64::from(place.pixels_per_point)))
+        Ok(self.hands.photo_view.image_from_viewport(offset * f64::from(place.pixels_per_point)))
     }
 
     fn call_pick(&self, x: f64, y: f64) -> Answer {
@@ -150,9 +150,11 @@ impl PinPose {
     }
 
     fn page_state(&self) -> PageState {
-        let viewport = self.ui_state.viewport.map_or([0.0; 4], |place| {
-            [place.rect.left(), place.rect.top(), place.rect.width(), place.rect.height()].map(f64::from)
-        });
+        let rect_of = |place: Option<ui::ViewportPlace>| {
+            place.map_or([0.0; 4], |ui::ViewportPlace { rect, .. }| {
+                [rect.left(), rect.top(), rect.width(), rect.height()].map(f64::from)
+            })
+        };
         let question = self.session.question().map(|question| match question {
             Question::PosesAs(_) => "poses_as",
             Question::CameraSize { .. } => "camera_size",
@@ -162,9 +164,11 @@ impl PinPose {
             photo: self.session.photo().map(|photo| photo.id.0),
             selected: self.session.selected().map(|id| id.0),
             tool: if self.session.tool() == Tool::Move { "move" } else { "rotate" },
-            zoom: self.view.zoom,
-            center: self.view.center.to_array(),
-            viewport,
+            zoom: self.hands.photo_view.zoom,
+            center: self.hands.photo_view.center.to_array(),
+            viewport: rect_of(self.ui_state.viewport),
+            scene_viewport: rect_of(self.ui_state.scene_viewport),
+            arrangement: self.session.panes().arrangement.name(),
             panels: !self.ui_state.panels_hidden,
             busy: self.loading.is_busy() || self.scenes.is_switching(),
             saved: self.autosave.state(&self.session) == Saving::Saved,

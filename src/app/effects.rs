@@ -1,8 +1,9 @@
 //! Carrying out what the session asks of the world outside.
 
 use super::PinPose;
-use crate::interact::object_rect;
+use crate::interact::{SceneMove, Viewpoint};
 use crate::platform;
+use crate::scene::ObjectId;
 use crate::session::{Effect, Notice};
 
 impl PinPose {
@@ -21,9 +22,10 @@ impl PinPose {
             Effect::ShowScenes => self.show_scenes(),
             Effect::SaveNow => self.save_now(),
             Effect::AskSaveAs => self.ask_save_as(),
+            Effect::ResetSceneView => self.hands.move_scene(SceneMove::Reset, &self.session),
             Effect::RenameSelected => self.ui_state.rename_selected(&self.session),
-            Effect::ZoomToObject => self.zoom_to_object(),
-            Effect::FitPhoto => self.view.fit(),
+            Effect::ZoomToObject => self.show(self.session.selected()),
+            Effect::FitPhoto => self.show(None),
             Effect::Notify(notice) => self.notify(notice),
             effect => {
                 let ctx = self.ctx.clone();
@@ -34,11 +36,14 @@ impl PinPose {
         }
     }
 
-    fn zoom_to_object(&mut self) {
-        let selected = self.session.selected_annotation();
-        let rect = selected.and_then(|(photo, object, _)| object_rect(self.session.scene(), photo, object));
-        if let Some(rect) = rect {
-            self.view.show(&rect);
+    /// Shows an object, or everything, in the views that are on screen.
+    fn show(&mut self, object: Option<ObjectId>) {
+        let arrangement = self.session.panes().arrangement;
+        if arrangement.shows_photo() {
+            Viewpoint::show(&mut self.hands.photo_view, &self.session, object);
+        }
+        if arrangement.shows_scene() {
+            self.hands.scene_view.show(&self.session, object);
         }
     }
 }

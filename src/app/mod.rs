@@ -21,7 +21,7 @@ mod widgets;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex};
 
-use crate::interact::{PhotoGestures, PhotoView};
+use crate::interact::Hands;
 use crate::platform::{self, PageCalls, SceneId, Storage};
 use crate::render::{Gpu, Renderer};
 use crate::session::{Command, Notice, Session};
@@ -33,8 +33,7 @@ pub use scenes::StartWith;
 /// The whole program.
 pub struct PinPose {
     session: Session,
-    view: PhotoView,
-    gestures: PhotoGestures,
+    hands: Hands,
     ui_state: UiState,
     loading: loading::Loading,
     photos: photo_cache::PhotoCache,
@@ -48,9 +47,9 @@ pub struct PinPose {
     mask_layer: mask_layer::MaskLayer,
     ctx: egui::Context,
     performance: performance::Performance,
+    /// While the key that hides the overlay is down: what was shown before.
+    layers_before_hold: Option<crate::scene::Layers>,
     events: events::Events,
-    /// Read at the start of each frame: where the pointer is over the viewport, in its physical pixels.
-    pointer: Option<glam::DVec2>,
 }
 
 /// What the program starts with.
@@ -78,8 +77,7 @@ impl PinPose {
         let first_id = if is_example { SceneId::example() } else { platform::new_scene_id() };
         let mut app = Self {
             session: Session::default(),
-            view: PhotoView::default(),
-            gestures: PhotoGestures::default(),
+            hands: Hands::default(),
             ui_state: UiState::new(ui::Preferences::load()),
             loading: loading::Loading::new(ctx),
             photos: photo_cache::PhotoCache::default(),
@@ -93,8 +91,8 @@ impl PinPose {
             mask_layer: mask_layer::MaskLayer::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
+            layers_before_hold: None,
             events: events::Events::default(),
-            pointer: None,
         };
         app.start_with(start.with);
         app
@@ -109,7 +107,7 @@ impl PinPose {
 
     fn try_apply(&mut self, command: Command) -> Result<(), String> {
         if matches!(command, Command::CancelGesture | Command::Run(crate::session::CommandId::Cancel)) {
-            self.gestures.cancel();
+            self.hands.cancel();
         }
         let effects = self.session.apply(command, platform::now_ms()).map_err(|error| error.to_string())?;
         effects.into_iter().for_each(|effect| self.carry_out(effect));
@@ -141,12 +139,11 @@ impl eframe::App for PinPose {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
-        let cursor_pixel = self.pointer.map(|position| self.view.image_from_viewport(position));
         let open_scene = self.autosave.id();
         let opening = || ui::Busy { text: "Opening…".to_owned(), can_cancel: false };
         let busy = self.loading.busy(platform::now_ms()).or_else(|| self.scenes.is_opening().then(opening));
         let around = ui::Surroundings {
-            view: &self.view,
+            hands: &self.hands,
             renderer: self.renderer.as_ref(),
             pixels,
             masks: self.mask_layer.pixels(),
@@ -161,9 +158,6 @@ impl eframe::App for PinPose {
             },
             update_ready: platform::update_offer().is_some(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
-            under_cursor: self.hit_under_cursor(cursor_pixel),
-            cursor_pixel,
-            dragging: self.gestures.is_dragging_object(),
         };
         if self.performance.start_ms == 0.0 {
             self.performance.start_ms = platform::navigation_ms();
@@ -177,7 +171,11 @@ impl eframe::App for PinPose {
             self.loading.cancel();
             self.notify(Notice::info("Cancelled: what was not read yet is left out"));
         }
-        self.place_view();
+        self.place_views();
+        if let Some(moved) = asked.scene_move {
+            self.hands.move_scene(moved, &self.session);
+            ui.ctx().request_repaint();
+        }
         if asked.apply_update {
             platform::reload();
         }

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::PinPose;
 use super::autosave::Finished;
-use crate::interact::PhotoGestures;
+use crate::interact::Hands;
 use crate::platform::{self, Saved, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture, StorageUse};
 use crate::session::{Command, Notice, Session};
 use crate::ui::{Saving, SceneRequest};
@@ -366,8 +366,7 @@ impl PinPose {
 
     fn fresh_session(&mut self) {
         self.session = Session::default();
-        self.gestures = PhotoGestures::default();
-        self.view.fit();
+        self.hands = Hands::default();
     }
 
     fn take_arrived(&mut self, arrived: Arrived) {

@@ -1,12 +1,27 @@
-//! Hands: pointer and wheel in the photo view to commands.
+//! Hands: pointer and wheel in the views to commands.
 //!
 //! Knows nothing of egui: plain input in, commands out, so that gestures are tested as scripts.
 
 mod drag;
-mod photo_gestures;
+mod eye;
+mod gestures;
+pub mod gizmo;
+mod gizmo_drag;
+mod hands;
+mod object_drag;
 mod photo_view;
 mod pick;
+mod pointer;
+mod scene_content;
+mod scene_view;
+mod viewpoint;
 
-pub use photo_gestures::{Button, Modifiers, PhotoGestures, PointerAction, PointerEvent};
+pub use eye::Eye;
+pub use gestures::Gestures;
+pub use hands::{Hands, Pane, SceneMove};
 pub use photo_view::PhotoView;
-pub use pick::{Hit, object_rect, pick_all};
+pub use pick::{Hit, object_rect, pick_all, pick_along};
+pub use pointer::{Button, Modifiers, PointerAction, PointerEvent};
+pub use scene_content::{image_distance_mm, orbit_pivot_mm, other_cameras, plane_corners};
+pub use scene_view::{SceneView, StandardView};
+pub use viewpoint::{GroundDrag, Viewpoint};

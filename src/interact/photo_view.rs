@@ -1,8 +1,12 @@
 //! Which part of the photo fills the viewport: zoom and pan.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
-use crate::math::ImageRect;
+use super::viewpoint::{GroundDrag, Viewpoint};
+use super::{Button, Eye, Modifiers, object_rect};
+use crate::math::{ImageRect, Pose};
+use crate::scene::{Layers, ObjectId};
+use crate::session::Session;
 
 /// Screen pixels per photo pixel can go up to this: single pixels fill a hand's breadth.
 const MAX_ZOOM: f64 = 128.0;
@@ -104,6 +108,51 @@ impl PhotoView {
         self.zoom = self.zoom.clamp((whole / MAX_SHRINK).min(1.0), MAX_ZOOM.max(whole));
         // The middle of the viewport stays over the photo, so that it cannot be lost.
         self.center = self.center.clamp(DVec2::splat(-0.5), self.photo - 0.5);
+    }
+}
+
+impl Viewpoint for PhotoView {
+    fn eye(&self, session: &Session) -> Option<Eye> {
+        let camera = session.photo()?.camera;
+        let origin_px = self.viewport / 2.0 - self.center * self.zoom;
+        Some(Eye { camera, eye_from_camera: Pose::IDENTITY, zoom: self.zoom, origin_px })
+    }
+
+    fn ground_drag_anywhere(&self, button: Button, _modifiers: Modifiers) -> Option<GroundDrag> {
+        (button == Button::Middle).then_some(GroundDrag::Pan)
+    }
+
+    fn ground_drag(&self) -> GroundDrag {
+        GroundDrag::Pan
+    }
+
+    fn begin_ground_drag(&mut self, _session: &Session) {}
+
+    fn drag_ground(&mut self, _kind: GroundDrag, way_px: DVec2) {
+        self.pan(way_px);
+    }
+
+    fn zoom_about(&mut self, position: DVec2, factor: f64, _surface_camera_mm: Option<DVec3>) {
+        Self::zoom_about(self, position, factor);
+    }
+
+    fn show(&mut self, session: &Session, object: Option<ObjectId>) {
+        let photo = session.photo().map(|photo| photo.id);
+        let rect = photo.zip(object).and_then(|(photo, object)| object_rect(session.scene(), photo, object));
+        match rect {
+            Some(rect) => Self::show(self, &rect),
+            None => self.fit(),
+        }
+    }
+
+    fn wipe_px(&self, session: &Session) -> Option<f64> {
+        let look = session.look();
+        let part = look.wipe.filter(|_| look.layers != Layers::PhotoOnly)?;
+        Some(f64::from(part) * self.viewport.x)
+    }
+
+    fn width_px(&self) -> f64 {
+        self.viewport.x
     }
 }
 

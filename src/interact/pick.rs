@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::math::ImageRect;
+use crate::math::{ImageRect, Ray};
 use crate::scene::{ObjectId, PhotoId, Scene};
 
 /// A surface point under a pixel.
@@ -20,7 +20,11 @@ pub struct Hit {
 /// The visible objects under a pixel of the photo, each where the view ray first meets it, the nearest one first.
 pub fn pick_all(scene: &Scene, photo: PhotoId, pixel: DVec2) -> Vec<Hit> {
     let Some(camera) = scene.photo(photo).map(|photo| photo.camera) else { return Vec::new() };
-    let ray_camera = camera.ray(pixel);
+    pick_along(scene, photo, &camera.ray(pixel))
+}
+
+/// The visible objects of a photo along a ray of its camera's frame, the nearest one first.
+pub fn pick_along(scene: &Scene, photo: PhotoId, ray_camera: &Ray) -> Vec<Hit> {
     let visible = scene.objects_in(photo).filter(|(object, _)| object.visible);
     let mut hits: Vec<Hit> = visible
         .filter_map(|(object, annotation)| {
@@ -35,7 +39,8 @@ pub fn pick_all(scene: &Scene, photo: PhotoId, pixel: DVec2) -> Vec<Hit> {
             })
         })
         .collect();
-    hits.sort_by(|a, b| a.point_camera_mm.z.total_cmp(&b.point_camera_mm.z));
+    let distance = |hit: &Hit| (hit.point_camera_mm - ray_camera.origin).dot(ray_camera.direction);
+    hits.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     hits
 }
 

@@ -77,11 +77,15 @@ pub struct PageState {
     pub photo: Option<u32>,
     pub selected: Option<u32>,
     pub tool: &'static str,
-    /// Physical pixels per photo pixel, and the point of the photo in the middle of the viewport.
+    /// Of the photo view: physical pixels per photo pixel, and the point of the photo in the middle of the viewport.
     pub zoom: f64,
     pub center: [f64; 2],
     /// In CSS pixels: x, y, width, height.
     pub viewport: [f64; 4],
+    /// Of the scene view; all 0 where it is not on screen.
+    pub scene_viewport: [f64; 4],
+    /// "photo", "scene" or "split".
+    pub arrangement: &'static str,
     pub panels: bool,
     pub busy: bool,
     pub saved: bool,

@@ -209,7 +209,8 @@ impl Session {
         poses
     }
 
-    pub(super) fn check_movable(&self, (photo, object): Target) -> Result<(), CommandError> {
+    /// Why a pose cannot be moved now.
+    pub fn check_movable(&self, (photo, object): Target) -> Result<(), CommandError> {
         self.scene.annotation(photo, object).ok_or_else(|| self.not_in_photo(object))?;
         self.check_settable((photo, object))
     }

@@ -22,14 +22,14 @@ mod welcome;
 
 use egui::{CentralPanel, Frame, Panel};
 
-use crate::interact::PhotoView;
+use crate::interact::{Hands, SceneMove};
 use crate::platform::{SceneId, SceneSummary, StorageUse};
 use crate::session::{Command, Effect, Session};
 
 pub use keymap::{Binding, Keymap, Refusal};
 pub use preferences::{DragModifier, ModifierKey, ModifierMap, Preferences, ThemeChoice};
 pub use scenes_dialog::SceneRequest;
-pub use shortcuts::{Pressed, pressed_commands, shortcut_text};
+pub use shortcuts::{Pressed, is_released, pressed_commands, shortcut_text};
 pub use theme::apply_theme;
 pub use thumbnails::{MOST_SIDE_PX as THUMBNAIL_SIDE_PX, Thumbnails};
 pub use toasts::Toasts;
@@ -52,8 +52,10 @@ pub struct UiState {
     paste_dialog: paste_dialog::State,
     fit_count: dialogs::FitCount,
     strip: strip::State,
-    /// Where the viewport was in the last frame.
+    /// Where the photo view and the scene view were in the last frame; `None` where they were not on screen.
     pub viewport: Option<ViewportPlace>,
+    pub scene_viewport: Option<ViewportPlace>,
+    split: viewport::SplitState,
 }
 
 /// Windows that come up over the rest, one at a time.
@@ -96,7 +98,7 @@ impl UiState {
 
 /// What the interface shows besides the session.
 pub struct Surroundings<'a> {
-    pub view: &'a PhotoView,
+    pub hands: &'a Hands,
     pub renderer: Option<&'a SharedRenderer>,
     /// The pixels of the photo that is shown, once they are decoded.
     pub pixels: Option<std::sync::Arc<crate::photo::Pixels>>,
@@ -108,11 +110,6 @@ pub struct Surroundings<'a> {
     pub update_ready: bool,
     /// Files are being dragged over the window.
     pub files_hover: bool,
-    /// The surface point under the cursor.
-    pub under_cursor: Option<crate::interact::Hit>,
-    /// The point of the photo under the cursor.
-    pub cursor_pixel: Option<glam::DVec2>,
-    pub dragging: bool,
     /// The scenes that are stored, the one that was changed last first.
     pub scenes: &'a [SceneSummary],
     pub store: StoreView<'a>,
@@ -150,6 +147,7 @@ pub enum Saving {
 pub struct Asked {
     pub commands: Vec<Command>,
     pub scene_requests: Vec<SceneRequest>,
+    pub scene_move: Option<SceneMove>,
     pub apply_update: bool,
     pub cancel_loading: bool,
 }
@@ -183,11 +181,11 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     let ground = if is_empty { visuals.panel_fill } else { theme::VIEWPORT_BACKGROUND };
     CentralPanel::default().frame(Frame::NONE.fill(ground)).show(ui, |ui| {
         if is_empty {
-            state.viewport = None;
+            (state.viewport, state.scene_viewport) = (None, None);
             welcome::draw(ui, around, &mut asked);
         } else {
             theme::use_dark(ui);
-            state.viewport = Some(viewport::draw(ui, session, around, &mut asked.commands));
+            viewport::draw(ui, session, around, state, &mut asked);
         }
     });
     dialogs::draw(ui.ctx(), session, state, &mut asked.commands);

@@ -7,7 +7,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use pinpose::formats::NamedFile;
-use pinpose::interact::PhotoView;
+use pinpose::interact::Hands;
 use pinpose::platform::{SceneHeading, SceneId, SceneSummary};
 use pinpose::session::{Command, CommandId, Session};
 use pinpose::ui::{self, Busy, Saving, Surroundings, ThemeChoice, UiState};
@@ -41,7 +41,7 @@ fn harness_of(session: Session, size: [f32; 2], pixels_per_point: f32) -> (Harne
             commands.extend(pressed.into_iter().map(|pressed| Command::Run(pressed.id)));
         }
         let around = Surroundings {
-            view: &PhotoView::default(),
+            hands: &Hands::default(),
             renderer: None,
             pixels: None,
             masks: None,
@@ -49,9 +49,6 @@ fn harness_of(session: Session, size: [f32; 2], pixels_per_point: f32) -> (Harne
             busy: busy.clone(),
             update_ready: false,
             files_hover: false,
-            under_cursor: None,
-            cursor_pixel: None,
-            dragging: false,
             scenes,
             store: ui::StoreView { now_ms: NOW_MS, ..ui::StoreView::default() },
         };

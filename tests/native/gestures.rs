@@ -1,7 +1,7 @@
 //! Gestures as scripts: pointer events in, poses out, with the view at several zooms.
 
 use glam::DVec2;
-use pinpose::interact::{Button, Modifiers, PhotoGestures, PhotoView, PointerAction, PointerEvent, pick_all};
+use pinpose::interact::{Button, Gestures, Modifiers, PhotoView, PointerAction, PointerEvent, pick_all};
 use pinpose::scene::AnnotationState;
 use pinpose::session::{Command, CommandId, Session};
 
@@ -10,16 +10,17 @@ use crate::support::{NOW_MS, small_session};
 struct Hand {
     session: Session,
     view: PhotoView,
-    gestures: PhotoGestures,
+    gestures: Gestures,
     modifiers: Modifiers,
+    refusals: Vec<String>,
 }
 
 impl Hand {
     fn new() -> Self {
         let mut view = PhotoView::default();
         view.set_sizes(DVec2::new(800.0, 600.0), DVec2::new(640.0, 480.0));
-        let (gestures, modifiers) = Default::default();
-        Self { session: small_session(), view, gestures, modifiers }
+        let (gestures, modifiers, refusals) = Default::default();
+        Self { session: small_session(), view, gestures, modifiers, refusals }
     }
 
     /// `pixel` is in the `image` frame.
@@ -31,7 +32,8 @@ impl Hand {
     fn act_at(&mut self, position: DVec2, action: PointerAction) {
         let event = PointerEvent { position, action, modifiers: self.modifiers };
         for command in self.gestures.handle(&event, &self.session, &mut self.view) {
-            self.session.apply(command, NOW_MS).unwrap();
+            // What is refused is said to the user.
+            self.refusals.extend(self.session.apply(command, NOW_MS).err().map(|error| error.to_string()));
         }
     }
 
@@ -205,4 +207,57 @@ fn a_locked_object_stays_while_the_hand_moves() {
     let (before, middle) = (hand.pose(), hand.middle());
     hand.drag(Button::Left, middle, middle + DVec2::new(50.0, 0.0));
     assert_eq!(hand.pose(), before);
+    assert_eq!(hand.refusals, ["box is locked"], "it is said once");
+}
+
+#[test]
+fn a_confirmed_object_stays_and_says_why() {
+    let mut hand = Hand::new();
+    let middle = hand.middle();
+    hand.drag(Button::Left, middle, middle + DVec2::new(10.0, 0.0));
+    hand.session.apply(Command::Run(CommandId::ConfirmAndNext), NOW_MS).unwrap();
+    let (before, middle) = (hand.pose(), hand.middle());
+    hand.drag(Button::Right, middle, middle + DVec2::new(50.0, 0.0));
+    assert_eq!(hand.pose(), before);
+    assert!(matches!(&hand.refusals[..], [text] if text.contains("reopen")), "{:?}", hand.refusals);
+}
+
+#[test]
+fn a_double_click_on_the_ground_fits_and_keeps_the_selection() {
+    let mut hand = Hand::new();
+    hand.view.zoom_about(DVec2::new(400.0, 300.0), 1.5);
+    let selected = hand.session.selection();
+    let ground = DVec2::new(10.0, 10.0);
+    for _ in 0..2 {
+        hand.act_at(ground, PointerAction::Press(Button::Left));
+        hand.act_at(ground, PointerAction::Release(Button::Left));
+    }
+    hand.act_at(ground, PointerAction::DoubleClick);
+    assert!(hand.view.fitted);
+    assert_eq!(hand.session.selection(), selected);
+}
+
+#[test]
+fn ctrl_adds_to_the_selection_and_takes_out_of_it() {
+    let mut hand = Hand::new();
+    let middle = hand.middle();
+    hand.modifiers.ctrl = true;
+    hand.act(middle, PointerAction::Press(Button::Left));
+    hand.act(middle, PointerAction::Release(Button::Left));
+    assert!(hand.session.selection().is_empty(), "it was in the selection");
+    hand.act(middle, PointerAction::Press(Button::Left));
+    hand.act(middle, PointerAction::Release(Button::Left));
+    assert_eq!(hand.session.selection().len(), 1);
+}
+
+#[test]
+fn the_wipes_line_follows_the_hand() {
+    let mut hand = Hand::new();
+    hand.session.apply(Command::Run(CommandId::ToggleWipe), NOW_MS).unwrap();
+    let pose = hand.pose();
+    hand.act_at(DVec2::new(402.0, 200.0), PointerAction::Press(Button::Left));
+    hand.act_at(DVec2::new(600.0, 210.0), PointerAction::Move);
+    hand.act_at(DVec2::new(600.0, 210.0), PointerAction::Release(Button::Left));
+    assert_eq!(hand.session.look().wipe, Some(0.75));
+    assert_eq!((hand.pose(), hand.view.fitted), (pose, true));
 }

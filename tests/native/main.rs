@@ -15,6 +15,7 @@ mod linemod;
 mod looks;
 mod mesh_corpus;
 mod panels;
+mod scene_view;
 mod scenes;
 mod scenes_dialog;
 mod scripts;

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use pinpose::formats::PosesAs;
-use pinpose::interact::PhotoView;
+use pinpose::interact::Hands;
 use pinpose::math::Pose;
 use pinpose::session::{Command, CommandId, Session};
 use pinpose::ui::{self, Saving, Surroundings, UiState};
@@ -48,7 +48,7 @@ fn harness_of(session: Session, size: [f32; 2]) -> (Harness<'static>, Rc<RefCell
     let harness = Harness::builder().with_size(size).build_ui(move |ui| {
         ui::apply_theme(ui.ctx());
         let around = Surroundings {
-            view: &PhotoView::default(),
+            hands: &Hands::default(),
             renderer: None,
             pixels: None,
             masks: None,
@@ -56,9 +56,6 @@ fn harness_of(session: Session, size: [f32; 2]) -> (Harness<'static>, Rc<RefCell
             busy: None,
             update_ready: false,
             files_hover: false,
-            under_cursor: None,
-            cursor_pixel: None,
-            dragging: false,
             scenes: &[],
             store: ui::StoreView::default(),
         };

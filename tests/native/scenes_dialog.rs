@@ -6,7 +6,7 @@ use std::rc::Rc;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use pinpose::interact::PhotoView;
+use pinpose::interact::Hands;
 use pinpose::platform::{SceneHeading, SceneId, SceneSummary, StorageUse};
 use pinpose::session::Session;
 use pinpose::ui::{self, Saving, SceneRequest, StoreView, Surroundings, UiState};
@@ -52,7 +52,7 @@ fn harness(
         ui::apply_theme(ui.ctx());
         let usage = StorageUse { used_bytes: 12_700_000, quota_bytes: Some(2_100_000_000) };
         let around = Surroundings {
-            view: &PhotoView::default(),
+            hands: &Hands::default(),
             renderer: None,
             pixels: None,
             masks: None,
@@ -60,9 +60,6 @@ fn harness(
             busy: None,
             update_ready: false,
             files_hover: false,
-            under_cursor: None,
-            cursor_pixel: None,
-            dragging: false,
             scenes: &scenes,
             store: StoreView {
                 open_scene: scenes.first().map(|scene| &scene.id),

@@ -1,0 +1,63 @@
+//! One line that says what to do next, where that may not be clear.
+
+use egui::{Align2, Area, Id, Order, Rect, RichText, Ui, Vec2};
+
+use crate::scene::{AnnotationState, ObjectId, PhotoId};
+use crate::session::{Command, Session};
+use crate::ui::{Asked, Surroundings, theme};
+
+/// In a narrower view the line goes below the choices in the corner.
+const WIDE: f32 = 1000.0;
+
+struct Hint {
+    text: String,
+    place: Option<(PhotoId, ObjectId)>,
+}
+
+pub fn draw(ui: &Ui, rect: Rect, session: &Session, around: &Surroundings<'_>, asked: &mut Asked) {
+    if around.hands.is_dragging_object() || session.question().is_some() {
+        return;
+    }
+    let Some(hint) = hint(session) else { return };
+    let top = if rect.width() < WIDE { 52.0 } else { 12.0 };
+    Area::new(Id::unique("hint"))
+        .order(Order::Middle)
+        .pivot(Align2::CENTER_TOP)
+        .fixed_pos(rect.center_top() + Vec2::new(0.0, top))
+        .interactable(hint.place.is_some())
+        .show(ui.ctx(), |ui| {
+            theme::overlay_frame().show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(hint.text));
+                    if let Some((photo, object)) = hint.place
+                        && ui.add(theme::primary_button("Place it here")).clicked()
+                    {
+                        asked.commands.push(Command::Place { photo, object });
+                    }
+                });
+            });
+        });
+}
+
+fn hint(session: &Session) -> Option<Hint> {
+    let scene = session.scene();
+    let selected = session.selected().and_then(|id| scene.object(id));
+    let say = |text: &str| Some(Hint { text: text.to_owned(), place: None });
+    let Some(photo) = session.photo() else { return say("Now drop a photo") };
+    if scene.objects.is_empty() {
+        return say("Now drop the mesh of the object (PLY, OBJ, GLB)");
+    }
+    if scene.objects_in(photo.id).next().is_none() && selected.is_none() {
+        return say("Nothing is placed in this photo: choose an object in the list");
+    }
+    match (selected, session.selected_annotation()) {
+        (Some(object), None) => {
+            let text = format!("{} is not in this photo", object.name);
+            Some(Hint { text, place: Some((photo.id, object.id)) })
+        }
+        (_, Some((_, _, annotation))) if annotation.state == AnnotationState::Untouched => {
+            say("Drag the object onto its image.  Right drag: turn.  Shift + wheel: depth.")
+        }
+        _ => None,
+    }
+}
