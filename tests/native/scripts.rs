@@ -193,6 +193,31 @@ fn every_command_of_the_table_does_something() {
         run(&mut session, Command::ShowPhoto(first));
         drag(&mut session, DVec3::X);
         match info.id {
+            CommandId::LinkObjects | CommandId::UnlinkObjects => {
+                run(&mut session, Command::Run(CommandId::DuplicateObject));
+                run(&mut session, Command::Run(CommandId::SelectAll));
+                if info.id == CommandId::UnlinkObjects {
+                    run(&mut session, Command::Run(CommandId::LinkObjects));
+                }
+            }
+            CommandId::SelectAll => drop(run(&mut session, Command::Select(None))),
+            CommandId::Reopen => {
+                run(&mut session, Command::Run(CommandId::ConfirmAndNext));
+                run(&mut session, Command::ShowPhoto(first));
+            }
+            CommandId::BackToReference => {
+                run(&mut session, Command::Run(CommandId::StoreReference));
+                drag(&mut session, DVec3::Y);
+            }
+            CommandId::CopyFromPrevious => drop(run(&mut session, Command::Run(CommandId::NextPhoto))),
+            CommandId::PhotoView => drop(run(&mut session, Command::Run(CommandId::SceneView))),
+            id if id.selects().is_some() => {
+                // As many objects as there are numbers, and none selected.
+                for _ in 0..8 {
+                    run(&mut session, Command::Run(CommandId::DuplicateObject));
+                }
+                run(&mut session, Command::Select(None));
+            }
             CommandId::Redo => drop(run(&mut session, Command::Run(CommandId::Undo))),
             CommandId::PreviousPhoto => drop(run(&mut session, Command::Run(CommandId::NextPhoto))),
             CommandId::MoveTool => drop(run(&mut session, Command::Run(CommandId::RotateTool))),
