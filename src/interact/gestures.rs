@@ -158,14 +158,14 @@ impl Gestures {
         }
         let Some(eye) = view.eye(session) else { return Action::Ground(view.ground_drag()) };
         if button == Button::Left {
-            if self.is_on_wipe(event.position, session, view) {
-                return Action::Wipe;
-            }
             let gizmo = Gizmo::of(session, &eye, self.pixels_per_point);
             if let Some(drag) =
                 gizmo.and_then(|gizmo| GizmoDrag::start(session, &eye, &gizmo, event.position))
             {
                 return Action::Handle(Box::new(drag));
+            }
+            if self.is_on_wipe(event.position, session, view) {
+                return Action::Wipe;
             }
         }
         match ObjectDrag::start(session, &eye, event.position, button) {

@@ -44,7 +44,11 @@ fn wipe_grip(ui: &Ui, place: &ViewportPlace, session: &Session, around: &Surroun
     let color = if around.hands.wipe_is_lit(session) { theme::ACCENT } else { Color32::WHITE };
     painter.vline(x, place.rect.y_range(), Stroke::new(3.5, super::colors::SHADE));
     painter.vline(x, place.rect.y_range(), Stroke::new(1.5, color));
-    let grip = Rect::from_center_size(egui::pos2(x, place.rect.center().y), Vec2::new(14.0, 34.0));
+    // Low, where objects seldom are.
+    let grip = Rect::from_center_size(
+        egui::pos2(x, place.rect.bottom() - 0.2 * place.rect.height()),
+        Vec2::new(14.0, 34.0),
+    );
     painter.rect_filled(grip.expand(1.5), 7.0, super::colors::SHADE);
     painter.rect_filled(grip, 6.0, color);
     for offset in [-2.5, 2.5] {
