@@ -11,7 +11,7 @@ struct Frame {
     distortion: vec4<f32>,
     // k3, the largest squared radius of the lens, 1 if there is distortion, 0
     distortion_more: vec4<f32>,
-    // Photo width, height, mip level, 1 if there is a photo
+    // Photo width, height, mip level, opacity (0: there is none)
     photo: vec4<f32>,
     // sRGB, and the opacity over all objects
     background: vec4<f32>,

@@ -49,8 +49,9 @@ fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
     let uv = (pixel + 0.5) / frame.photo.xy;
     let inside = all(uv >= vec2<f32>(0.0)) && all(uv < vec2<f32>(1.0));
     var color = frame.background.rgb;
-    if (inside && frame.photo.w > 0.5) {
-        color = adjusted(textureSampleLevel(photo_texture, photo_sampler, uv, frame.photo.z).rgb);
+    if (inside && frame.photo.w > 0.0) {
+        let photo = adjusted(textureSampleLevel(photo_texture, photo_sampler, uv, frame.photo.z).rgb);
+        color = mix(color, photo, frame.photo.w);
     }
     if (inside && frame.more.x > 0.5) {
         let mask = textureSampleLevel(mask_texture, photo_sampler, uv, frame.photo.z);

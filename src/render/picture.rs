@@ -21,6 +21,8 @@ pub struct Picture {
     /// The part of the eye's `image` frame that fills the target.
     pub rect: ImageRect,
     pub photo: Option<PhotoLayer>,
+    /// 0 to 1, over the background.
+    pub photo_opacity: f32,
     /// Of the photo's size, tinted, straight alpha; between photo and meshes.
     pub masks: Option<PhotoLayer>,
     pub items: Vec<Item>,
@@ -158,7 +160,8 @@ impl<'a> Subject<'a> {
 /// The whole of one photo of a scene, all of whose visible objects are in the picture.
 pub fn picture_of(subject: &Subject<'_>) -> Option<Picture> {
     let Subject { scene, photo, .. } = *subject;
-    let camera = scene.photo(photo)?.camera;
+    let shown = scene.photo(photo)?;
+    let camera = shown.camera;
     let items = scene.objects_in(photo).filter(|(object, _)| object.visible).enumerate();
     let items = items.map(|(index, (object, annotation))| Item {
         mesh: object.mesh.clone(),
@@ -173,6 +176,7 @@ pub fn picture_of(subject: &Subject<'_>) -> Option<Picture> {
         eye_from_camera: Pose::IDENTITY,
         rect: ImageRect::of_photo(camera.width, camera.height),
         photo: subject.pixels.clone().map(PhotoLayer),
+        photo_opacity: if shown.visible { shown.opacity } else { 0.0 },
         masks: subject.masks.clone().map(PhotoLayer),
         items: items.collect(),
         ghosts: ghosts_of(scene, photo),

@@ -86,7 +86,7 @@ fn photo_part(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
         pixels.map_or(1.0, |pixels| pixels.width as f32),
         pixels.map_or(1.0, |pixels| pixels.height as f32),
         photo_pixels_per_target_pixel.log2().max(0.0) as f32,
-        flag(picture.shows_photo()),
+        if picture.shows_photo() { picture.photo_opacity } else { 0.0 },
     ]
 }
 

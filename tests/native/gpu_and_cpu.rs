@@ -85,6 +85,7 @@ pub fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: 
         camera,
         rect,
         photo: None,
+        photo_opacity: 1.0,
         items: vec![item],
         ghosts: Vec::new(),
         eye_from_camera: Pose::IDENTITY,

@@ -156,7 +156,7 @@ fn a_pose_is_typed_as_angles_and_each_edit_is_one_undo_step() {
     let (mut harness, session) = tall_harness(small_session());
     let start = pose(&session);
     harness.run();
-    click(&mut harness, "Set pose");
+    click(&mut harness, "Pose values");
     click(&mut harness, "Rotation as");
     click(&mut harness, "Euler xyz");
     type_into(&mut harness, "rz", "190");
@@ -178,7 +178,7 @@ fn a_field_that_is_left_as_it_was_changes_nothing() {
     session.apply(Command::SetPoseFromText("1.23456789 2 777.123456789".to_owned()), NOW_MS).unwrap();
     let (mut harness, session) = tall_harness(session);
     harness.run();
-    click(&mut harness, "Set pose");
+    click(&mut harness, "Pose values");
     click(&mut harness, "Rotation as");
     click(&mut harness, "Axis-angle");
     let before = pose(&session);
@@ -196,7 +196,7 @@ fn a_dragged_number_is_one_undo_step() {
     let (mut harness, session) = tall_harness(small_session());
     let start = pose(&session);
     harness.run();
-    click(&mut harness, "Set pose");
+    click(&mut harness, "Pose values");
     click(&mut harness, "Rotation as");
     click(&mut harness, "Quaternion");
     let from = harness.get_by_label("tx").rect().center();
@@ -219,7 +219,7 @@ fn a_dragged_number_is_one_undo_step() {
 fn a_pasted_matrix_is_set_and_one_that_is_none_is_explained() {
     let (mut harness, session) = tall_harness(small_session());
     harness.run();
-    click(&mut harness, "Set pose");
+    click(&mut harness, "Pose values");
     click(&mut harness, "Pose as text");
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     harness.run();
@@ -378,7 +378,7 @@ fn what_is_in_the_panel_never_makes_it_wider() {
     let (mut harness, _) = tall_harness(small_session());
     harness.run();
     let left = harness.get_by_label("Viewport").rect().left();
-    for section in ["Set pose", "Mesh", "Nudge", "Lens distortion"] {
+    for section in ["Pose values", "Mesh", "Nudge", "Lens distortion"] {
         click(&mut harness, section);
     }
     for form in ["Euler xyz", "Quaternion", "Axis-angle"] {

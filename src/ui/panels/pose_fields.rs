@@ -44,7 +44,7 @@ struct Touched {
 pub fn draw(ui: &mut Ui, session: &Session, form: &mut PoseForm, commands: &mut Vec<Command>) {
     section(
         ui,
-        "Set pose",
+        "Pose values",
         false,
         |_| {},
         |ui| match session.selected_annotation() {

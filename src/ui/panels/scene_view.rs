@@ -16,7 +16,7 @@ pub fn draw(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     }
     section(
         ui,
-        "Scene view",
+        "Image plane",
         true,
         |_| {},
         |ui| {

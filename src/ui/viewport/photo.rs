@@ -28,6 +28,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         selected: session.selected(),
         look: session.look(),
         pixels_per_point,
+        masks: around.masks.clone(),
         ..Subject::new(session.scene(), photo.id, around.pixels.clone())
     };
     let mut picture = picture_of(&subject)?;

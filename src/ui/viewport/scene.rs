@@ -39,6 +39,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         selected: session.selected(),
         look,
         pixels_per_point,
+        masks: around.masks.clone(),
         ..Subject::new(session.scene(), photo.id, around.pixels.clone())
     };
     let view = &around.hands.scene_view;
