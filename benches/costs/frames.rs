@@ -159,6 +159,7 @@ fn picture(mesh: &Arc<MeshAsset>, mode: OverlayMode) -> Picture {
         eye_from_camera: Pose::IDENTITY,
         rect: ImageRect::of_photo(SIZE[0], SIZE[1]),
         photo: Some(PhotoLayer(Arc::new(pixels))),
+        photo_opacity: 1.0,
         masks: None,
         items: vec![item],
         ghosts: Vec::new(),

@@ -289,7 +289,7 @@ fn loading_can_be_cancelled() {
 fn menus_have_groups_and_say_why_not() {
     let (mut harness, _) = harness(small_session());
     harness.run();
-    for (menu, item) in [("File", "Import camera…"), ("Edit", "Paste pose…"), ("Pose", "Nudge")] {
+    for (menu, item) in [("File", "Import camera…"), ("Edit", "Paste pose…"), ("Pose", "Confirm and next")] {
         harness.get_by_label(menu).click();
         harness.run();
         harness.get_by_label_contains(item);
