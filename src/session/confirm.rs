@@ -79,7 +79,7 @@ fn confirm(scene: &mut Scene, photo: PhotoId) -> Vec<ObjectId> {
 }
 
 /// Photos are a sequence if they have one size. A pose is carried where its object waits untouched, and to a photo that has
-/// no object yet; a photo that shows other things is left alone.
+/// no object yet; a photo that shows other things, or of which a reference knows others alone, is left alone.
 fn carry(scene: &mut Scene, from: PhotoId, to: PhotoId, now_ms: f64) {
     let size = |id: PhotoId| scene.photo(id).map(|photo| (photo.asset.width, photo.asset.height));
     if size(from) != size(to) || scene.photo(to).is_none_or(|photo| photo.locked) {
@@ -94,7 +94,7 @@ fn carry(scene: &mut Scene, from: PhotoId, to: PhotoId, now_ms: f64) {
     for (object, annotation) in confirmed {
         let waits = match scene.annotation(to, object) {
             Some(there) => there.state == AnnotationState::Untouched,
-            None => is_empty,
+            None => is_empty && may_be_in(scene, to, object),
         };
         if waits {
             let carried = Annotation {
@@ -106,4 +106,11 @@ fn carry(scene: &mut Scene, from: PhotoId, to: PhotoId, now_ms: f64) {
             scene.annotations.insert((to, object), carried);
         }
     }
+}
+
+/// False where references say which objects are in a photo, and this is none of them.
+fn may_be_in(scene: &Scene, photo: PhotoId, object: ObjectId) -> bool {
+    let known = scene.references.iter().flat_map(|reference| reference.poses.keys());
+    let mut in_photo = known.filter(|(known, _)| *known == photo).map(|(_, object)| *object).peekable();
+    in_photo.peek().is_none() || in_photo.any(|known| known == object)
 }

@@ -69,6 +69,11 @@ pub fn draw(
     commands.extend(run.map(|entry| entry.command.clone()));
     let is_done = is_closed || is_left || run.is_some();
     state.was_open = !is_done;
+    if is_done {
+        // The next key is for the viewport, also where it comes before the next frame.
+        ctx.memory_mut(egui::Memory::stop_text_input);
+        ctx.request_repaint();
+    }
     is_done
 }
 

@@ -157,7 +157,7 @@ fn gestures(ui: &mut Ui, modifiers: &ModifierMap, matches: &dyn Fn(&str) -> bool
     let name = |what| modifiers.get(what).name();
     let (fine, roll, depth) = (name(DragModifier::Fine), name(DragModifier::Roll), name(DragModifier::Depth));
     let gestures = [
-        ("Click".to_owned(), "select an object (Alt: the one behind)"),
+        ("Click".to_owned(), "select an object (Alt: the one behind; Ctrl: add to the selection)"),
         ("Drag an object".to_owned(), "move it; the point you grab stays under the cursor"),
         ("Right drag an object".to_owned(), "turn it about its centre"),
         (format!("{roll} + right drag"), "roll it about the line of sight"),
@@ -166,6 +166,11 @@ fn gestures(ui: &mut Ui, modifiers: &ModifierMap, matches: &dyn Fn(&str) -> bool
         ("Wheel".to_owned(), "zoom to the cursor"),
         ("Drag the ground, middle drag".to_owned(), "move the photo"),
         ("Double click".to_owned(), "zoom to the object, or show the whole photo"),
+        (
+            "In the scene view".to_owned(),
+            "drag the ground to look round, Shift or middle to move, wheel to zoom",
+        ),
+        ("Two fingers".to_owned(), "move and zoom"),
         ("Esc".to_owned(), "put back the drag under way"),
     ];
     let shown = gestures.iter().filter(|(gesture, effect)| matches(gesture) || matches(effect));

@@ -8,7 +8,7 @@ use crate::session::{Command, CommandId};
 
 const STEPS: [(&str, &str, &str); 3] = [
     ("1", "A photo", "PNG or JPEG"),
-    ("2", "A 3D mesh of the object", "PLY, OBJ or GLB"),
+    ("2", "A 3D mesh of the object", "PLY, OBJ, STL, GLB or OFF"),
     ("3", "The camera", "JSON, or type fx fy cx cy later"),
 ];
 

@@ -24,7 +24,7 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
     };
     section(ui, "Objects", true, import, |ui| {
         if objects.is_empty() {
-            super::number_field::note(ui, "Drop a mesh (PLY, OBJ, GLB)", true);
+            super::number_field::note(ui, "Drop a mesh (PLY, OBJ, STL, GLB, OFF)", true);
         }
         list::rows(ui, List::Objects, objects.len(), reveal, |ui, index| {
             object_row(ui, session, index, &objects[index], state, commands);

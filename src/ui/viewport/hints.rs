@@ -45,7 +45,7 @@ fn hint(session: &Session) -> Option<Hint> {
     let say = |text: &str| Some(Hint { text: text.to_owned(), place: None });
     let Some(photo) = session.photo() else { return say("Now drop a photo") };
     if scene.objects.is_empty() {
-        return say("Now drop the mesh of the object (PLY, OBJ, GLB)");
+        return say("Now drop the mesh of the object (PLY, OBJ, STL, GLB, OFF)");
     }
     if scene.objects_in(photo.id).next().is_none() && selected.is_none() {
         return say("Nothing is placed in this photo: choose an object in the list");
