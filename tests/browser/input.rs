@@ -161,6 +161,30 @@ impl Page {
         })
     }
 
+    /// Presses a key and holds it, until `key_up`.
+    pub fn key_down(&mut self, key: &str) -> anyhow::Result<()> {
+        self.keyboard("rawKeyDown", &key_fields(key, false)?)
+    }
+
+    pub fn key_up(&mut self, key: &str) -> anyhow::Result<()> {
+        self.keyboard("keyUp", &key_fields(key, false)?)
+    }
+
+    /// Types a text, a key after the other, quickly.
+    pub fn type_text(&mut self, text: &str) -> anyhow::Result<()> {
+        for letter in text.chars() {
+            let shift = letter.is_ascii_uppercase();
+            let mut fields = key_fields(&letter.to_string(), shift)?;
+            fields["text"] = letter.to_string().into();
+            fields["modifiers"] = if shift { Modifier::Shift.bit() } else { 0 }.into();
+            for kind in ["keyDown", "keyUp"] {
+                fields["type"] = kind.into();
+                self.call("Input.dispatchKeyEvent", fields.clone())?;
+            }
+        }
+        self.next_frame()
+    }
+
     /// Presses a key so many times, quickly: the page may have had fewer frames meanwhile.
     pub fn keys(&mut self, key: &str, times: u32, modifiers: &[Modifier]) -> anyhow::Result<()> {
         if times == 0 {
@@ -311,7 +335,7 @@ fn named_key(name: &str) -> Option<(&'static str, u32)> {
         "Delete" => ("Delete", 46),
         "=" | "+" => ("Equal", 187),
         "," => ("Comma", 188),
-        "-" => ("Minus", 189),
+        "-" | "_" => ("Minus", 189),
         "." => ("Period", 190),
         "/" | "?" => ("Slash", 191),
         "[" => ("BracketLeft", 219),

@@ -5,7 +5,7 @@
 
 use anyhow::{Context as _, ensure};
 
-use crate::api::{Matrix, Pose};
+use crate::api::{Matrix, PATIENCE, Pose};
 use crate::context::Context;
 use crate::data::{File, Linemod, Sample};
 use crate::input::{Button, Modifier, Point};
@@ -49,7 +49,9 @@ fn pose_samples(context: &mut Context, linemod: &Linemod, samples: Vec<Sample>) 
         if outcome.add_mm > WANTED_ADD_MM || outcome.gestures > MAX_GESTURES {
             failed.push(sample.mesh);
         }
+        page.wait_until_saved()?;
         page.command("new_scene")?;
+        page.wait_for_state("!state.busy && state.photos.length === 0", PATIENCE)?;
     }
     ensure!(failed.is_empty(), "Not within {WANTED_ADD_MM} mm in {MAX_GESTURES} gestures: {failed:?}");
     Ok(())

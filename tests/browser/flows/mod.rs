@@ -10,6 +10,7 @@ mod safety;
 mod scenes;
 mod startup;
 mod view;
+mod workspace;
 
 use anyhow::Context as _;
 
@@ -69,6 +70,21 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "scenes-mid-drag", scenes::mid_drag),
     Flow::on(WEBGL, "scenes-version-1", scenes::version_1),
     Flow::on(WEBGL, "scenes-newer-version", scenes::newer_version),
+    Flow::on(WEBGL, "looks", workspace::looks),
+    Flow::on(WEBGL, "nudges", workspace::nudges),
+    Flow::on(WEBGL, "handles", workspace::handles),
+    Flow::on(WEBGL, "scene-view", workspace::scene_view),
+    Flow::on(WEBGL, "panels", workspace::panels),
+    Flow::on(WEBGL, "objects", workspace::objects),
+    Flow::on(WEBGL, "output", workspace::output),
+    Flow::on(WEBGL, "confirm", workspace::confirm),
+    Flow::on(WEBGL, "mask-import", workspace::mask_import),
+    Flow::on(WEBGL, "keys", workspace::keys),
+    Flow::on(WEBGL, "lost-graphics", workspace::lost_graphics),
+    Flow::on(WEBGPU, "looks-webgpu", workspace::looks).long(),
+    Flow::on(WEBGPU, "handles-webgpu", workspace::handles).long(),
+    Flow::on(WEBGPU, "scene-view-webgpu", workspace::scene_view).long(),
+    Flow::on(WEBGPU, "mask-import-webgpu", workspace::mask_import).long(),
 ];
 
 /// The sample that most flows use.

@@ -167,9 +167,9 @@ fn cancel_in_mid_drag(page: &mut Page) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Ctrl+S: what is downloaded is what is on screen, bit for bit.
+/// Ctrl+E: what is downloaded is what is on screen, bit for bit.
 fn save_poses(page: &mut Page) -> anyhow::Result<File> {
-    page.key("s", &[Modifier::Control])?;
+    page.key("e", &[Modifier::Control])?;
     let file = page.download(PATIENCE)?;
     ensure!(file.name == "000019-poses.json", "Saved as {}", file.name);
     let saved: Value = serde_json::from_slice(&file.bytes).context("The downloaded poses are no JSON")?;
@@ -179,7 +179,7 @@ fn save_poses(page: &mut Page) -> anyhow::Result<File> {
 }
 
 fn save_workspace(page: &mut Page) -> anyhow::Result<File> {
-    page.key("s", &[Modifier::Control, Modifier::Shift])?;
+    page.key("e", &[Modifier::Control, Modifier::Shift])?;
     let file = page.download(PATIENCE)?;
     ensure!(file.name == "000019-workspace.zip" && file.bytes.starts_with(b"PK"), "Saved as {}", file.name);
     Ok(file)
@@ -216,7 +216,8 @@ fn reload(page: &mut Page) -> anyhow::Result<()> {
 fn open_workspace(page: &mut Page, workspace: &File) -> anyhow::Result<()> {
     let before = page.state()?;
     page.command("new_scene")?;
-    ensure!(page.state()?.scene() == (&[][..], &[][..]), "The new scene is not empty");
+    let new = page.wait_for_state("!state.busy && state.photos.length === 0", PATIENCE)?;
+    ensure!(new.scene() == (&[][..], &[][..]), "The new scene is not empty");
     page.drop_files(std::slice::from_ref(workspace))?;
     let after = page.wait_for_state("state.photos.length === 1 && !state.busy", PATIENCE)?;
     ensure!(after.selected_pose()? == before.selected_pose()?, "The workspace opened as {after:?}");

@@ -104,9 +104,9 @@ fn overlay_looks(page: &mut Page) -> anyhow::Result<()> {
     let faint = object_on_screen(page)?;
     page.set_overlay_opacity(1.0)?;
     let again = object_on_screen(page)?;
-    page.key("l", &[])?;
+    page.key("u", &[])?;
     let unlined = object_on_screen(page)?;
-    page.key("l", &[])?;
+    page.key("u", &[])?;
     ensure!(plain == again, "Back at full opacity the picture is another one");
     ensure!(differing(&plain, &faint) > 2000, "The opacity changes {} pixels", differing(&plain, &faint));
     ensure!(differing(&plain, &unlined) > 200, "The outline is {} pixels", differing(&plain, &unlined));
