@@ -194,6 +194,7 @@ impl PinPose {
             draw_calls: usage.1,
             triangles: usage.2,
             wasm_bytes: platform::wasm_bytes(),
+            memory_bytes: platform::memory_bytes(),
             start_ms: self.performance.start_ms,
         }
     }

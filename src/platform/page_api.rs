@@ -133,6 +133,7 @@ pub struct Perf {
     pub draw_calls: u64,
     pub triangles: u64,
     pub wasm_bytes: f64,
+    pub memory_bytes: f64,
     pub start_ms: f64,
 }
 
