@@ -100,6 +100,7 @@ impl eframe::App for Bare {
                     draw_calls: 0,
                     triangles: 0,
                     wasm_bytes: platform::wasm_bytes(),
+                    memory_bytes: platform::memory_bytes(),
                     start_ms: self.start_ms,
                 }),
                 _ => PageAnswer::Nothing,

@@ -63,6 +63,7 @@ fn perf_json(perf: &Perf) -> Value {
         "draw_calls": perf.draw_calls,
         "triangles": perf.triangles,
         "wasm_bytes": perf.wasm_bytes,
+        "memory_bytes": perf.memory_bytes,
         "start_ms": perf.start_ms,
     })
 }

@@ -185,15 +185,17 @@ impl PinPose {
             usage.reset();
             counts
         });
+        let [cpu_median_ms, cpu_p95_ms] = self.performance.take_cpu_ms([0.5, 0.95]);
         Perf {
             backend: self.backend.clone(),
             frames: self.performance.frames,
-            cpu_median_ms: self.performance.cpu_ms_quantile(0.5),
-            cpu_p95_ms: self.performance.cpu_ms_quantile(0.95),
+            cpu_median_ms,
+            cpu_p95_ms,
             uploaded_bytes: usage.0,
             draw_calls: usage.1,
             triangles: usage.2,
             wasm_bytes: platform::wasm_bytes(),
+            memory_bytes: platform::memory_bytes(),
             start_ms: self.performance.start_ms,
         }
     }

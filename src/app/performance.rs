@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Frames over which the median is taken.
+/// Frames over which the median is taken, at most.
 const KEPT: usize = 240;
 
 #[derive(Debug, Default)]
@@ -23,11 +23,13 @@ impl Performance {
         }
     }
 
-    /// The time that `fraction` of the last frames stayed below.
-    pub fn cpu_ms_quantile(&self, fraction: f64) -> f64 {
-        let mut sorted: Vec<f32> = self.cpu_ms.iter().copied().collect();
+    /// The times that these fractions of the frames since the last call stayed below.
+    pub fn take_cpu_ms<const COUNT: usize>(&mut self, fractions: [f64; COUNT]) -> [f64; COUNT] {
+        let mut sorted: Vec<f32> = self.cpu_ms.drain(..).collect();
         sorted.sort_by(f32::total_cmp);
-        let index = (fraction * sorted.len() as f64) as usize;
-        sorted.get(index.min(sorted.len().saturating_sub(1))).map_or(0.0, |&ms| f64::from(ms))
+        fractions.map(|fraction| {
+            let index = (fraction * sorted.len() as f64) as usize;
+            sorted.get(index.min(sorted.len().saturating_sub(1))).map_or(0.0, |&ms| f64::from(ms))
+        })
     }
 }

@@ -126,6 +126,7 @@ pub struct Loaded {
 pub struct Perf {
     pub backend: String,
     pub frames: u64,
+    /// Of the frames since the last call.
     pub cpu_median_ms: f64,
     pub cpu_p95_ms: f64,
     /// Of the scene's passes, since the last call.
@@ -133,6 +134,7 @@ pub struct Perf {
     pub draw_calls: u64,
     pub triangles: u64,
     pub wasm_bytes: f64,
+    pub memory_bytes: f64,
     pub start_ms: f64,
 }
 

@@ -100,10 +100,12 @@ pub struct Perf {
     pub backend: String,
     pub frames: u64,
     pub cpu_ms: CpuMs,
-    /// These two since the call before.
+    /// These three since the call before, like the times.
     pub uploaded_bytes: u64,
     pub draw_calls: u64,
     pub triangles: u64,
+    /// Of the page's wasm: the most that it ever was.
+    pub memory_bytes: f64,
     pub start_ms: f64,
 }
 

@@ -147,9 +147,44 @@ pub fn flat_photo(name: &str, color: [u8; 3]) -> anyhow::Result<File> {
     Ok(File::new(name, png.into_inner()))
 }
 
-pub fn camera_file(name: &str) -> File {
-    let [[fx, _, cx], [_, fy, cy], _] = CAMERA;
+/// A photo that compresses as badly as a real one, each number another.
+pub fn noisy_photo(name: &str, number: u32) -> anyhow::Result<File> {
     let (width, height) = PHOTO_SIZE;
+    let mut value = number.wrapping_mul(747_796_405).wrapping_add(1);
+    let picture = RgbImage::from_fn(width, height, |x, y| {
+        Rgb([x + number, y + 3 * number, x + y].map(|base| {
+            value = value.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (base / 4 % 200) as u8 + (value >> 28) as u8
+        }))
+    });
+    let mut png = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut png, ImageFormat::Png)?;
+    Ok(File::new(name, png.into_inner()))
+}
+
+/// A photo of any size: fields of [`large_photo_color`].
+pub fn large_photo(name: &str, (width, height): (u32, u32)) -> anyhow::Result<File> {
+    let picture = RgbImage::from_fn(width, height, |x, y| Rgb(large_photo_color(x, y)));
+    let mut jpeg = Vec::new();
+    image::codecs::jpeg::JpegEncoder::new_with_quality(&mut jpeg, 95).encode_image(&picture)?;
+    Ok(File::new(name, jpeg))
+}
+
+/// Squares of 100 pixels.
+pub fn large_photo_color(x: u32, y: u32) -> [u8; 3] {
+    let (column, row) = (x / 100, y / 100);
+    [40 + (column * 5 % 160) as u8, 40 + (row * 6 % 160) as u8, 60 + ((column + row) % 2 * 60) as u8]
+}
+
+pub fn camera_file(name: &str) -> File {
+    camera_file_of(name, PHOTO_SIZE, 1.0)
+}
+
+/// The same camera with so many times as many pixels a side.
+pub fn camera_file_of(name: &str, (width, height): (u32, u32), scale: f64) -> File {
+    let [[fx, _, cx], [_, fy, cy], _] = CAMERA;
+    let [fx, fy] = [fx, fy].map(|focal| focal * scale);
+    let [cx, cy] = [cx, cy].map(|center| (center + 0.5) * scale - 0.5);
     let camera = json!({ "fx": fx, "fy": fy, "cx": cx, "cy": cy, "width": width, "height": height });
     File::new(name, camera.to_string())
 }

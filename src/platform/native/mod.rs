@@ -68,6 +68,10 @@ pub fn wasm_bytes() -> f64 {
     0.0
 }
 
+pub fn memory_bytes() -> f64 {
+    0.0
+}
+
 pub fn navigation_ms() -> f64 {
     0.0
 }

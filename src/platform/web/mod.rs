@@ -80,6 +80,12 @@ pub fn wasm_bytes() -> f64 {
     WASM_BYTES.with(JsValue::as_f64).unwrap_or(0.0)
 }
 
+/// The memory of this thread's wasm, in bytes. It never shrinks, so this is also the most that it ever was.
+pub fn memory_bytes() -> f64 {
+    let memory = wasm_bindgen::memory().unchecked_into::<js_sys::WebAssembly::Memory>();
+    f64::from(memory.buffer().unchecked_into::<js_sys::ArrayBuffer>().byte_length())
+}
+
 /// Is a newer page waiting? `wake` of [`watch_for_updates`] is called when that changes.
 pub fn update_offer() -> Option<UpdateOffer> {
     UPDATE_READY.get().then_some(UpdateOffer)

@@ -5,7 +5,7 @@ use std::time::Duration;
 use anyhow::{Context as _, ensure};
 
 use super::start_with_sample;
-use crate::api::{PATIENCE, Perf};
+use crate::api::{Matrix, PATIENCE, Perf};
 use crate::context::Context;
 use crate::data::{self, File, Linemod, ball_ply, camera_file, flat_photo};
 use crate::input::Button;
@@ -59,12 +59,12 @@ pub fn drag_cost(context: &mut Context) -> anyhow::Result<()> {
 }
 
 /// For one step of a drag.
-struct Cost {
-    bytes: f64,
-    draws: f64,
-    triangles: f64,
+pub(super) struct Cost {
+    pub bytes: f64,
+    pub draws: f64,
+    pub triangles: f64,
     frames: f64,
-    cpu_ms: f64,
+    pub cpu_ms: f64,
 }
 
 impl std::fmt::Display for Cost {
@@ -80,6 +80,9 @@ impl std::fmt::Display for Cost {
 
 const STEPS: u32 = 6;
 
+/// After so many steps a long drag begins its way again.
+const STEPS_OF_A_WAY: u32 = 7;
+
 fn cost_of_drag(page: &mut Page, files: &[File]) -> anyhow::Result<Cost> {
     page.load(files)?;
     let state = page.state()?;
@@ -89,21 +92,28 @@ fn cost_of_drag(page: &mut Page, files: &[File]) -> anyhow::Result<Cost> {
     let state = page.wait_until_saved()?;
     let pose = state.selected_pose()?.camera_from_object;
     ensure!(transformed(&pose, [0.0; 3]) == target, "The pose was not set");
-    let from = page.mouse_place(projected(&data::CAMERA, &pose, [0.0; 3]))?;
-    page.mouse_move(from)?;
-    page.mouse_down(from, Button::Left)?;
-    page.mouse_move_holding((from.0 + 10.0, from.1), Button::Left)?;
-    let before = page.perf()?;
-    for step in 1..=STEPS {
-        page.mouse_move_holding((from.0 + 10.0 + f64::from(step) * 8.0, from.1), Button::Left)?;
-    }
-    let after = page.perf()?;
-    page.mouse_up((from.0 + 10.0 + f64::from(STEPS) * 8.0, from.1), Button::Left)?;
-    Ok(cost_of_steps(&before, &after))
+    cost_of_dragging(page, &pose, STEPS)
 }
 
-fn cost_of_steps(before: &Perf, after: &Perf) -> Cost {
-    let steps = f64::from(STEPS);
+/// Drags the object that is at this pose to the right, a step a frame.
+pub(super) fn cost_of_dragging(page: &mut Page, pose: &Matrix, steps: u32) -> anyhow::Result<Cost> {
+    const STEP: f64 = 8.0;
+    let from = page.mouse_place(projected(&data::CAMERA, pose, [0.0; 3]))?;
+    let place = |step: u32| (from.0 + 10.0 + f64::from(step % STEPS_OF_A_WAY) * STEP, from.1);
+    page.mouse_move(from)?;
+    page.mouse_down(from, Button::Left)?;
+    page.mouse_move_holding(place(0), Button::Left)?;
+    let before = page.perf()?;
+    for step in 1..=steps {
+        page.mouse_move_holding(place(step), Button::Left)?;
+    }
+    let after = page.perf()?;
+    page.mouse_up(place(steps), Button::Left)?;
+    Ok(cost_of_steps(&before, &after, steps))
+}
+
+fn cost_of_steps(before: &Perf, after: &Perf, steps: u32) -> Cost {
+    let steps = f64::from(steps);
     Cost {
         bytes: after.uploaded_bytes as f64 / steps,
         draws: after.draw_calls as f64 / steps,

@@ -3,6 +3,7 @@
 mod bad_input;
 mod expert;
 mod idle;
+mod large;
 mod masks;
 mod path;
 mod pixels;
@@ -60,6 +61,11 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "idle", idle::idle),
     Flow::on(WEBGPU, "idle-webgpu", idle::idle).long(),
     Flow::on(BOTH, "drag-cost", idle::drag_cost),
+    Flow::on(WEBGL, "drag-ten", large::drag_ten),
+    Flow::on(WEBGL, "drag-million", large::drag_million).long(),
+    Flow::on(WEBGL, "many-photos", large::many_photos),
+    Flow::on(WEBGL, "very-many-photos", large::very_many_photos).long(),
+    Flow::on(WEBGL, "large-photo", large::large_photo_flow),
     Flow::on(WEBGPU, "expert", expert::three_samples),
     Flow::on(BOTH, "expert-all", expert::all_samples).long(),
     Flow::on(WEBGL, "bad-input", bad_input::bad_files),

@@ -1,0 +1,214 @@
+//! What is large: fine meshes, many photos, a photo of many pixels.
+
+use std::time::Instant;
+
+use anyhow::{Context as _, ensure};
+use image::GenericImageView as _;
+
+use super::idle::{Cost, cost_of_dragging};
+use crate::api::{PATIENCE, Photo};
+use crate::context::Context;
+use crate::data::{self, File, ball_ply, camera_file, camera_file_of, flat_photo, large_photo, noisy_photo};
+use crate::page::Page;
+use crate::poses::{axis_rotation, unprojected, with_translation};
+
+/// Enough for a median that one slow frame does not move.
+const STEPS: u32 = 30;
+
+/// Room for the object's sphere between its neighbours.
+const RADIUS_MM: f32 = 30.0;
+const DEPTH_MM: f64 = 600.0;
+
+/// A step's share of the processor. On a machine with nothing else to do it is a few milliseconds; a software renderer
+/// takes its processors from the page.
+const MOST_CPU_MS: f64 = 10.0;
+
+/// A hundredth: counts are exact, but the number of frames in which a step is drawn is not always the same.
+const SAME: f64 = 1.01;
+
+/// An object's uniforms as they are uploaded.
+const BYTES_PER_OBJECT: f64 = 256.0;
+
+/// Ten objects of 50 000 triangles cost what one of 10 000 does, but for their uniforms and draw calls.
+pub fn drag_ten(context: &mut Context) -> anyhow::Result<()> {
+    let page = context.start("")?;
+    let one = drag(page, "One object of 10 000 triangles", &[(100, 51)])?;
+    let ten_small = drag(page, "Ten objects of 10 000 triangles", &[(100, 51); 10])?;
+    let ten = drag(page, "Ten objects of 50 000 triangles", &[(200, 126); 10])?;
+    ensure!(ten.bytes <= ten_small.bytes * SAME, "Uploads depend on the meshes");
+    ensure!(ten.draws <= ten_small.draws * SAME, "Draw calls depend on the meshes");
+    ensure!(ten.bytes <= one.bytes * SAME + 9.0 * BYTES_PER_OBJECT, "More is uploaded than uniforms");
+    // Each object in the two passes of surfaces and silhouettes.
+    ensure!(ten.draws <= one.draws * SAME + 9.0 * 2.0, "An object has more than two draw calls");
+    compare(&one, &ten)
+}
+
+/// A million triangles cost what ten thousand do.
+pub fn drag_million(context: &mut Context) -> anyhow::Result<()> {
+    let page = context.start("")?;
+    let small = drag(page, "One object of 10 000 triangles", &[(100, 51)])?;
+    let large = drag(page, "One object of 1 000 000 triangles", &[(1000, 501)])?;
+    ensure!(large.bytes <= small.bytes * SAME, "Uploads depend on the mesh");
+    ensure!(large.draws <= small.draws * SAME, "Draw calls depend on the mesh");
+    compare(&small, &large)
+}
+
+fn compare(small: &Cost, large: &Cost) -> anyhow::Result<()> {
+    println!("   processor time a frame, large to small: {:.2}", large.cpu_ms / small.cpu_ms);
+    ensure!(
+        large.cpu_ms <= MOST_CPU_MS,
+        "A frame of a drag takes {:.2} ms of the page's processor",
+        large.cpu_ms
+    );
+    Ok(())
+}
+
+/// Loads a ball for each number of segments and rings, puts them side by side, and drags the last one.
+fn drag(page: &mut Page, what: &str, balls: &[(u32, u32)]) -> anyhow::Result<Cost> {
+    page.command("new_scene")?;
+    let mut files = vec![flat_photo("flat.png", [70, 74, 80])?, camera_file("camera.json")];
+    // Of different sizes: the same file is the same object.
+    files.extend((0_u8..).zip(balls).map(|(number, &(segments, rings))| {
+        let radius_mm = RADIUS_MM + 0.1 * f32::from(number);
+        ball_ply(&format!("ball_{number}.ply"), radius_mm, segments, rings)
+    }));
+    let start = Instant::now();
+    let loaded = page.load(&files)?;
+    ensure!(loaded.problems.is_empty(), "{}", loaded.problems.join("; "));
+    let load_seconds = start.elapsed().as_secs_f64();
+    let state = page.state()?;
+    ensure!(state.objects.len() == balls.len(), "{} objects were loaded", state.objects.len());
+    let photo = state.shown_photo()?.id;
+    for (number, object) in (0_u8..).zip(&state.objects) {
+        let place = (80.0 + 110.0 * f64::from(number % 5), 150.0 + 150.0 * f64::from(number / 5));
+        let center = unprojected(&data::CAMERA, place, DEPTH_MM);
+        page.set_pose(photo, object.id, with_translation(axis_rotation(0, 0.0), center))?;
+    }
+    let state = page.wait_until_saved()?;
+    let last = state.objects.last().context("No object")?.id;
+    let poses = &state.shown_photo()?.poses;
+    let pose = poses.iter().find(|pose| pose.object == last).context("No pose")?;
+    let cost = cost_of_dragging(page, &pose.camera_from_object, STEPS)?;
+    println!("   {what} (loaded in {load_seconds:.1} s): {cost}");
+    ensure!(cost.triangles > 0.0, "Nothing was drawn");
+    Ok(cost)
+}
+
+/// The page's memory with all photos, of which it keeps the encoded files, the pixels of some, and small copies.
+const MOST_MEMORY_BYTES: f64 = 600e6;
+
+pub fn many_photos(context: &mut Context) -> anyhow::Result<()> {
+    step_through(context, 40)
+}
+
+pub fn very_many_photos(context: &mut Context) -> anyhow::Result<()> {
+    step_through(context, 200)
+}
+
+/// Loads photos in portions, goes through all of them, and looks at all in the strip.
+fn step_through(context: &mut Context, count: u32) -> anyhow::Result<()> {
+    const PORTION: u32 = 20;
+    let page = context.start("")?;
+    let empty_bytes = page.perf()?.memory_bytes;
+    let mut file_bytes = 0;
+    for first in (0..count).step_by(PORTION as usize) {
+        let photos: Vec<File> = (first..(first + PORTION).min(count))
+            .map(|number| noisy_photo(&format!("photo_{number:03}.png"), number))
+            .collect::<anyhow::Result<_>>()?;
+        file_bytes += photos.iter().map(|photo| photo.bytes.len()).sum::<usize>();
+        let loaded = page.load(&photos)?;
+        ensure!(loaded.problems.is_empty(), "{}", loaded.problems.join("; "));
+    }
+    let state = page.wait_until_saved()?;
+    ensure!(state.photos.len() == count as usize, "{} photos are open", state.photos.len());
+    let loaded_bytes = page.perf()?.memory_bytes;
+
+    page.eval(&format!("window.pinpose.command('show_photo', {})", state.photos[0].id))?;
+    let start = Instant::now();
+    for Photo { id, .. } in &state.photos[1..] {
+        page.key("n", &[])?;
+        page.wait_for_state(&format!("state.selection.photo === {id}"), PATIENCE)?;
+    }
+    let step_ms = start.elapsed().as_secs_f64() * 1000.0 / f64::from(count - 1);
+    // The last one is decoded by then.
+    let overlay = image::load_from_memory(&page.render_png("overlay")?)?;
+    ensure!(overlay.dimensions() == data::PHOTO_SIZE, "The picture is {:?}", overlay.dimensions());
+
+    let widgets = page.widgets()?;
+    let cell = widgets.iter().find(|widget| widget.label.starts_with("Photo photo_"));
+    let over = cell.context("The strip is not on the page")?.center();
+    // Back over all, a few cells at once.
+    for _ in 0..count / 2 {
+        page.wheel(over, 2, &[])?;
+    }
+    page.wait_for_widgets(&["Photo photo_000.png, not posed yet"])?;
+    let perf = page.perf()?;
+    println!(
+        "   {count} photos of {:.0} kB: {:.0} MB of wasm memory empty, {:.0} loaded, {:.0} when all were seen; \
+         {step_ms:.0} ms a step",
+        file_bytes as f64 / f64::from(count) / 1e3,
+        empty_bytes / 1e6,
+        loaded_bytes / 1e6,
+        perf.memory_bytes / 1e6,
+    );
+    ensure!(perf.memory_bytes > 0.0, "The memory was not measured");
+    ensure!(perf.memory_bytes <= MOST_MEMORY_BYTES, "{count} photos take {:.0} MB", perf.memory_bytes / 1e6);
+    Ok(())
+}
+
+/// A photo of twelve megapixels is shown, zoomed into, and exported as large as it is.
+pub fn large_photo_flow(context: &mut Context) -> anyhow::Result<()> {
+    const SIZE: (u32, u32) = (4000, 3000);
+    let page = context.start("")?;
+    let photo = large_photo("large.jpg", SIZE)?;
+    let kilobytes = photo.bytes.len() as f64 / 1e3;
+    let scale = f64::from(SIZE.0) / f64::from(data::PHOTO_SIZE.0);
+    let start = Instant::now();
+    page.load(&[photo, ball_ply("ball.ply", 50.0, 71, 41), camera_file_of("camera.json", SIZE, scale)])?;
+    let state = page.wait_for_state("!state.busy", PATIENCE)?;
+    let load_seconds = start.elapsed().as_secs_f64();
+    let photo = state.shown_photo()?;
+    ensure!(photo.k[0][0] == data::CAMERA[0][0] * scale, "K is {:?}", photo.k);
+    let object = state.selection.object.context("No object")?;
+    // In the photo's middle.
+    let center = unprojected(&photo.k, (2000.0, 1500.0), DEPTH_MM);
+    page.set_pose(photo.id, object, with_translation(axis_rotation(0, 0.0), center))?;
+    let fitted = page.wait_until_saved()?.viewport.zoom;
+
+    let at = page.mouse_place((1010.0, 760.0))?;
+    let before = page.image_from_page(at)?;
+    page.wheel(at, 12, &[])?;
+    let zoomed = page.wait_for_state(&format!("state.viewport.zoom > {}", fitted * 5.0), PATIENCE)?;
+    let after = page.image_from_page(at)?;
+    // A wheel keeps what is under it, to the rounding of numbers.
+    let moved = ((after.0 - before.0).powi(2) + (after.1 - before.1).powi(2)).sqrt();
+    ensure!(moved < 1e-6, "The zoom moved the photo by {moved} pixels");
+    let screenshot = page.screenshot()?;
+    let pixel = screenshot.get_pixel(at.0 as u32, at.1 as u32).0;
+    let expected = data::large_photo_color(before.0 as u32, before.1 as u32);
+    // JPEG's losses where there is no edge.
+    let is_near = pixel.iter().zip(expected).all(|(seen, expected)| seen.abs_diff(expected) <= 12);
+    ensure!(is_near, "{pixel:?} is shown, {expected:?} was expected");
+
+    let start = Instant::now();
+    let overlay = image::load_from_memory(&page.render_png("overlay")?)?.into_rgb8();
+    let export_seconds = start.elapsed().as_secs_f64();
+    ensure!(overlay.dimensions() == SIZE, "The picture is {:?}", overlay.dimensions());
+    for (x, y) in [(30, 40), (3970, 2960), (1010, 760)] {
+        let (seen, expected) = (overlay.get_pixel(x, y).0, data::large_photo_color(x, y));
+        let is_near = seen.iter().zip(expected).all(|(seen, expected)| seen.abs_diff(expected) <= 12);
+        ensure!(is_near, "({x}, {y}) is {seen:?}, {expected:?} was expected");
+    }
+    let (middle, bare) = (overlay.get_pixel(2000, 1500).0, data::large_photo_color(2000, 1500));
+    ensure!(
+        middle.iter().zip(bare).any(|(seen, bare)| seen.abs_diff(bare) > 12),
+        "No object is in the picture"
+    );
+    println!(
+        "   {kilobytes:.0} kB, loaded in {load_seconds:.1} s, zoom {fitted:.3} to {:.3}, overlay in {export_seconds:.1} s, \
+         {:.0} MB of wasm memory",
+        zoomed.viewport.zoom,
+        page.perf()?.memory_bytes / 1e6
+    );
+    Ok(())
+}
