@@ -9,7 +9,7 @@ use super::loading::Arrival;
 use super::pictures::PictureFor;
 use super::widgets::WidgetWatcher;
 use crate::formats::{Keep, PosesAs, write_document};
-use crate::interact::pick_all;
+use crate::interact::{Viewpoint as _, pick_all, pick_along};
 use crate::math::Pose;
 use crate::platform::{self, FileBytes, PageAnswer, PageCall, PageReply, PageState, PageValue, Perf, Picked};
 use crate::render::ExportKind;
@@ -133,14 +133,23 @@ impl PinPose {
 
     fn image_from_page(&self, x: f64, y: f64) -> Result<DVec2, String> {
         let place = self.ui_state.viewport.ok_or("no photo is shown")?;
-        let offset = DVec2::new(x - f64::from(place.rect.left()), y - f64::from(place.rect.top()));
-        Ok(self.hands.photo_view.image_from_viewport(offset * f64::from(place.pixels_per_point)))
+        Ok(self.hands.photo_view.image_from_viewport(offset_px(&place, x, y)))
     }
 
+    /// In whichever view the place is.
     fn call_pick(&self, x: f64, y: f64) -> Answer {
-        let pixel = self.image_from_page(x, y)?;
         let photo = self.session.photo().ok_or("no photo is shown")?;
-        let hit = pick_all(self.session.scene(), photo.id, pixel).first().copied();
+        let scene = self.session.scene();
+        let position = egui::pos2(x as f32, y as f32);
+        let hits = match self.ui_state.scene_viewport.filter(|place| place.rect.contains(position)) {
+            Some(place) => {
+                let eye = self.hands.scene_view.eye(&self.session);
+                let offset = offset_px(&place, x, y);
+                eye.map(|eye| pick_along(scene, photo.id, &eye.ray(offset))).unwrap_or_default()
+            }
+            None => pick_all(scene, photo.id, self.image_from_page(x, y)?),
+        };
+        let hit = hits.first().copied();
         Ok(PageAnswer::Picked(hit.map(|hit| Picked {
             object: hit.object.0,
             face: hit.face,
@@ -258,4 +267,10 @@ fn whole(number: f64) -> Result<u32, String> {
 
 fn not_one_of(given: &str, names: &[&str]) -> String {
     format!("the value is \"{given}\", one of {} expected", names.join(", "))
+}
+
+/// From a view's corner to a place of the page, in physical pixels.
+fn offset_px(place: &ui::ViewportPlace, x: f64, y: f64) -> DVec2 {
+    let offset = DVec2::new(x - f64::from(place.rect.left()), y - f64::from(place.rect.top()));
+    offset * f64::from(place.pixels_per_point)
 }
