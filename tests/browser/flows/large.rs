@@ -65,7 +65,9 @@ fn compare(small: &Cost, large: &Cost) -> anyhow::Result<()> {
 
 /// Loads a ball for each number of segments and rings, puts them side by side, and drags the last one.
 fn drag(page: &mut Page, what: &str, balls: &[(u32, u32)]) -> anyhow::Result<Cost> {
-    page.command("new_scene")?;
+    if !page.state()?.objects.is_empty() {
+        page.command("new_scene")?;
+    }
     let mut files = vec![flat_photo("flat.png", [70, 74, 80])?, camera_file("camera.json")];
     // Of different sizes: the same file is the same object.
     files.extend((0_u8..).zip(balls).map(|(number, &(segments, rings))| {
