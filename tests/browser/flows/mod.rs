@@ -60,7 +60,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "idle", idle::idle),
     Flow::on(WEBGPU, "idle-webgpu", idle::idle).long(),
     Flow::on(BOTH, "drag-cost", idle::drag_cost),
-    Flow::on(WEBGL, "drag-ten", large::drag_ten),
+    Flow::on(WEBGL, "drag-ten", large::drag_ten).long(),
     Flow::on(WEBGL, "drag-million", large::drag_million).long(),
     Flow::on(WEBGL, "many-photos", large::many_photos),
     Flow::on(WEBGL, "very-many-photos", large::very_many_photos).long(),
