@@ -62,7 +62,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(BOTH, "drag-cost", idle::drag_cost),
     Flow::on(WEBGL, "drag-ten", large::drag_ten).long(),
     Flow::on(WEBGL, "drag-million", large::drag_million).long(),
-    Flow::on(WEBGL, "many-photos", large::many_photos),
+    Flow::on(WEBGL, "many-photos", large::many_photos).long(),
     Flow::on(WEBGL, "very-many-photos", large::very_many_photos).long(),
     Flow::on(WEBGL, "large-photo", large::large_photo_flow),
     Flow::on(WEBGPU, "expert", expert::three_samples),
