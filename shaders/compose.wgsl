@@ -43,17 +43,31 @@ fn vs_wipe(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return target_corner(vec2<f32>((frame.shown.y + (corner.x * 2.0 - 1.0) * reach) / frame.target_rect.z, corner.y));
 }
 
-fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
+// The photo's own coordinates, 0 to 1.
+fn photo_uv(target_position: vec2<f32>) -> vec2<f32> {
     let pixel = frame.image_rect.xy + target_position / frame.target_rect.zw * frame.image_rect.zw;
     // Pixel (0, 0) has its centre at 0, so the photo begins half a pixel before it.
-    let uv = (pixel + 0.5) / frame.photo.xy;
-    let inside = all(uv >= vec2<f32>(0.0)) && all(uv < vec2<f32>(1.0));
+    return (pixel + 0.5) / frame.photo.xy;
+}
+
+fn is_inside(uv: vec2<f32>) -> bool {
+    return all(uv >= vec2<f32>(0.0)) && all(uv < vec2<f32>(1.0));
+}
+
+fn bare_photo_color(uv: vec2<f32>) -> vec3<f32> {
     var color = frame.background.rgb;
-    if (inside && frame.photo.w > 0.0) {
+    if (is_inside(uv) && frame.photo.w > 0.0) {
         let photo = adjusted(textureSampleLevel(photo_texture, photo_sampler, uv, frame.photo.z).rgb);
         color = mix(color, photo, frame.photo.w);
     }
-    if (inside && frame.more.x > 0.5) {
+    return color;
+}
+
+// The photo with its masks.
+fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
+    let uv = photo_uv(target_position);
+    var color = bare_photo_color(uv);
+    if (is_inside(uv) && frame.more.x > 0.5) {
         let mask = textureSampleLevel(mask_texture, photo_sampler, uv, frame.photo.z);
         color = mix(color, mask.rgb, mask.a);
     }
@@ -125,8 +139,14 @@ fn window_texel(target_position: vec2<f32>) -> vec2<i32> {
     return vec2<i32>(clamp(floor(target_position) - frame.window.xy, vec2<f32>(0.0), frame.window.zw - 1.0));
 }
 
+// Where no masks are shown: they would be read for nothing.
 @fragment
 fn fs_photo(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return vec4<f32>(bare_photo_color(photo_uv(position.xy - frame.target_rect.xy)), 1.0);
+}
+
+@fragment
+fn fs_masked_photo(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return vec4<f32>(photo_color(position.xy - frame.target_rect.xy), 1.0);
 }
 

@@ -57,9 +57,10 @@ pub enum PipelineKind {
     LinesBefore,
     /// Lines over everything.
     LinesInFront,
-    /// What is composed: the photo, or what is around objects in a free view; overlay and outlines, or the difference
-    /// with outlines; and a wipe's line.
+    /// What is composed: the photo, without masks or with them, or what is around objects in a free view; overlay and
+    /// outlines, or the difference with outlines; and a wipe's line.
     Photo,
+    MaskedPhoto,
     Backdrop,
     Overlay,
     Difference,
@@ -86,6 +87,7 @@ impl PipelineKind {
         Self::LinesBefore,
         Self::LinesInFront,
         Self::Photo,
+        Self::MaskedPhoto,
         Self::Backdrop,
         Self::Overlay,
         Self::Difference,
@@ -375,6 +377,7 @@ impl Recipe {
             Kind::LinesBefore => Self { blend: Some(ATOP), ..lines },
             Kind::LinesInFront => Self { depth: Some(DepthUse::IGNORED), ..lines },
             Kind::Photo => composed,
+            Kind::MaskedPhoto => Self { fragment: Some("fs_masked_photo"), ..composed },
             Kind::Backdrop => Self { fragment: Some("fs_backdrop"), ..composed },
             Kind::Overlay => overlay,
             Kind::Difference => Self { fragment: Some("fs_difference"), ..overlay },

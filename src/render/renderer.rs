@@ -222,7 +222,11 @@ impl Renderer {
 /// What a picture is composed of, from below, and how many vertices each part has.
 fn composed_parts(picture: &Picture) -> impl Iterator<Item = (PipelineKind, u32)> {
     let is_free = picture.surroundings.is_some();
-    let below = if is_free { PipelineKind::Backdrop } else { PipelineKind::Photo };
+    let below = match is_free {
+        true => PipelineKind::Backdrop,
+        false if picture.shows_masks() => PipelineKind::MaskedPhoto,
+        false => PipelineKind::Photo,
+    };
     // In a free view the photo is somewhere else than the meshes, and there is nothing to take a difference to.
     let is_difference = picture.look.difference && !is_free && picture.fills();
     let overlay = if is_difference { PipelineKind::Difference } else { PipelineKind::Overlay };

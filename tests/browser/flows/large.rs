@@ -13,7 +13,7 @@ use crate::page::Page;
 use crate::poses::{axis_rotation, unprojected, with_translation};
 
 /// Enough for a median that one slow frame does not move.
-const STEPS: u32 = 30;
+const STEPS: u32 = 12;
 
 /// Room for the object's sphere between its neighbours.
 const RADIUS_MM: f32 = 30.0;
