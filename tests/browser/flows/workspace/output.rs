@@ -11,13 +11,18 @@ use crate::page::Page;
 pub fn output(context: &mut Context) -> anyhow::Result<()> {
     let (page, shapes) = start_with_shapes(context)?;
     let ball = shapes.ball;
+    // Room for more than two lines.
+    let widgets = page.wait_for_widgets(&["Fold output"])?;
+    let fold = widgets.iter().find(|widget| widget.label == "Fold output").context("No output")?;
+    let edge = (120.0, fold.rect[1] - 5.0);
+    page.drag(edge, (edge.0, edge.1 - 160.0), Button::Left, 3, &[])?;
     let first = lines(page)?.len();
     let at = place_of(page, ball, [0.0; 3])?;
     drag_by(page, at, (25.0, 10.0))?;
     let moved = pose_of(page, ball)?;
     let at = place_of(page, ball, [0.0; 3])?;
     page.drag(at, (at.0 + 20.0, at.1 + 10.0), Button::Right, 2, &[])?;
-    page.wheel(at, 2, &[Modifier::Shift])?;
+    page.wheel(at, 1, &[Modifier::Shift])?;
     page.key("ArrowLeft", &[])?;
     let shown = lines(page)?;
     let labels: Vec<&str> = shown.iter().map(|line| line.label.as_str()).collect();
