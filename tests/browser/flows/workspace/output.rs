@@ -2,7 +2,7 @@
 
 use anyhow::{Context as _, ensure};
 
-use super::{click_in_panel, drag_by, place_of, pose_of, start_with_shapes, undo};
+use super::{drag_by, place_of, pose_of, start_with_shapes, undo};
 use crate::api::Widget;
 use crate::context::Context;
 use crate::input::{Button, Modifier};
@@ -38,7 +38,7 @@ pub fn output(context: &mut Context) -> anyhow::Result<()> {
     undo(page)?;
     ensure!(pose_of(page, ball)? != moved, "The return was not undone");
 
-    click_in_panel(page, "Search the history")?;
+    page.click_widget("Search the history")?;
     page.type_text("rotate")?;
     let found = lines(page)?;
     ensure!(found.len() == 1 && found[0].label.contains("Rotate"), "Found were {found:?}");
@@ -46,7 +46,7 @@ pub fn output(context: &mut Context) -> anyhow::Result<()> {
     page.key("Backspace", &[])?;
     page.key("Escape", &[])?;
     let all = lines(page)?.len();
-    click_in_panel(page, "Clear history list")?;
+    page.click_widget("Clear history list")?;
     ensure!(lines(page)?.is_empty(), "The list was not cleared");
     undo(page)?;
     ensure!(lines(page)?.len() == all, "Undo brought {} of {all} lines back", lines(page)?.len());
@@ -54,7 +54,7 @@ pub fn output(context: &mut Context) -> anyhow::Result<()> {
     copies(page, ball)
 }
 
-/// The lines of the history that are on screen.
+/// The lines of the history that are on screen, from above.
 fn lines(page: &mut Page) -> anyhow::Result<Vec<Widget>> {
     page.next_frame()?;
     let widgets = page.widgets()?;
@@ -62,7 +62,9 @@ fn lines(page: &mut Page) -> anyhow::Result<Vec<Widget>> {
         let bytes = widget.label.as_bytes();
         bytes.len() > 8 && bytes[0].is_ascii_digit() && bytes[2] == b':' && bytes[5] == b':'
     };
-    Ok(widgets.into_iter().filter(is_line).collect())
+    let mut lines: Vec<Widget> = widgets.into_iter().filter(is_line).collect();
+    lines.sort_by(|a, b| a.rect[1].total_cmp(&b.rect[1]));
+    Ok(lines)
 }
 
 /// Each command leaves the pose as text in the clipboard.
