@@ -45,11 +45,18 @@ pub fn output(context: &mut Context) -> anyhow::Result<()> {
     page.key("a", &[Modifier::Control])?;
     page.key("Backspace", &[])?;
     page.key("Escape", &[])?;
-    let all = lines(page)?.len();
+    let all = lines(page)?;
     page.click_widget("Clear history list")?;
     ensure!(lines(page)?.is_empty(), "The list was not cleared");
     undo(page)?;
-    ensure!(lines(page)?.len() == all, "Undo brought {} of {all} lines back", lines(page)?.len());
+    let back = lines(page)?;
+    ensure!(
+        back.first().map(|line| &line.label) == all.first().map(|line| &line.label) && all.len() > 1,
+        "Undo brought {} of {} lines back",
+        back.len(),
+        all.len()
+    );
+    ensure!(back.len() == all.len(), "The panel has another height than it was given");
 
     copies(page, ball)
 }
