@@ -33,7 +33,11 @@ impl PinPose {
                 PageCall::Load { files, poses_as } => self.call_load(files, poses_as, reply),
                 PageCall::Render { photo, kind, object } => self.call_render(photo, &kind, object, reply),
                 PageCall::Widgets => {
-                    ctx.enable_accesskit();
+                    if self.answers.widgets.is_empty() {
+                        // The frame that the last answer was given in has left a tree, of how things were then.
+                        ctx.plugin::<WidgetWatcher>().lock().take();
+                        ctx.enable_accesskit();
+                    }
                     self.answers.widgets.push(reply);
                     ctx.request_repaint();
                 }

@@ -32,6 +32,8 @@ pub fn draw(ui: &mut Ui, session: &Session, search: &mut String, commands: &mut 
     if found.is_empty() {
         let text = if log.is_empty() { "Every change of a pose is listed here." } else { "Nothing found." };
         ui.label(RichText::new(text).small().weak());
+        // The panel keeps the height that it was dragged to.
+        ui.take_available_height();
         return;
     }
     ui.spacing_mut().item_spacing.y = 0.0;

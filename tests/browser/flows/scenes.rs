@@ -20,7 +20,7 @@ pub fn scenes(context: &mut Context) -> anyhow::Result<()> {
     page.wait_for_state("state.objects.length === 1", PATIENCE)?;
     let first = page.wait_until_saved()?;
 
-    page.click_widget("Saved in this browser")?;
+    page.click_widget("Saved")?;
     page.click_widget("New scene")?;
     page.wait_for_state("!state.busy && state.photos.length === 0", PATIENCE)?;
     // The welcome screen offers the first one, and says when it was changed.
@@ -64,7 +64,7 @@ pub fn mid_drag(context: &mut Context) -> anyhow::Result<()> {
     let to = (from.0 + 40.0, from.1 + 25.0);
     page.drag(from, to, Button::Left, 2, &[])?;
     page.wait_for_state("state.notices.some((notice) => notice.startsWith('Not saved'))", PATIENCE)?;
-    page.wait_for_widgets(&["Download workspace"])?;
+    page.wait_for_widgets(&["Download"])?;
     page.mouse_down(to, Button::Left)?;
     let settled = page.state()?;
     page.mouse_move_holding((to.0 + 15.0, to.1), Button::Left)?;
@@ -121,12 +121,12 @@ pub fn newer_version(context: &mut Context) -> anyhow::Result<()> {
     page.wait_for_state("state.notices.some((notice) => notice.includes('a newer PinPose'))", PATIENCE)?;
     page.drop_files(&[flat_photo("photo.png", [70, 74, 80])?])?;
     page.wait_for_state("state.photos.length === 1", PATIENCE)?;
-    page.wait_for_widgets(&["Download workspace"])?;
+    page.wait_for_widgets(&["Download"])?;
     Ok(())
 }
 
 fn open_scene(page: &mut Page, row: &str) -> anyhow::Result<()> {
-    page.click_widget("Saved in this browser")?;
+    page.click_widget("Saved")?;
     let widgets = page.wait_for_widgets(&["Scenes", "Duplicate"])?;
     ensure!(widgets.iter().any(|widget| widget.label.starts_with(row)), "{row} is not listed");
     let label = widgets.into_iter().map(|widget| widget.label).find(|label| label.starts_with(row));

@@ -143,25 +143,24 @@ fn differing(a: &RgbaImage, b: &RgbaImage) -> usize {
     a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count()
 }
 
-/// Scrolls the side panel until a widget of it is in sight.
+/// Scrolls the side panel until a widget of it is in sight, and rests.
 fn reveal(page: &mut Page, label: &str) -> anyhow::Result<Widget> {
     let deadline = Instant::now() + PATIENCE;
+    let mut before = None;
     loop {
         let widgets = page.wait_for_widgets(&[label, "Fold output"])?;
         let find = |label: &str| widgets.iter().find(|widget| widget.label == label).cloned();
         let widget = find(label).context("The widget is gone")?;
-        let bottom = find("Fold output").context("The output is gone")?.rect[1] - 8.0;
-        let (x, y) = widget.center();
-        // What is in the output or in the views does not scroll.
-        let scrolls =
-            x < page.state()?.viewport.rect[0] && y != find("Fold output").map_or(0.0, |it| it.center().1);
-        if !scrolls || (y > 60.0 && y < bottom - 12.0) || widget.rect[1] > bottom + 400.0 * 1e3 {
-            return Ok(widget);
-        }
+        let bottom = find("Fold output").context("The output is gone")?.rect[1] - 16.0;
+        let (_, y) = widget.center();
         ensure!(Instant::now() < deadline, "\"{label}\" does not come into sight");
-        page.wheel((100.0, 250.0), if y < bottom - 12.0 { 1 } else { -1 }, &[])?;
-        std::thread::sleep(Duration::from_millis(250));
-        page.next_frame()?;
+        if before.replace(widget.rect) != Some(widget.rect) {
+            // It has just come, or the panel is still scrolling.
+        } else if y > 60.0 && y < bottom {
+            return Ok(widget);
+        } else {
+            page.wheel((100.0, 250.0), if y < bottom { 1 } else { -1 }, &[])?;
+        }
     }
 }
 

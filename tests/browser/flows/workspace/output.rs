@@ -2,7 +2,7 @@
 
 use anyhow::{Context as _, ensure};
 
-use super::{click_in_panel, drag_by, place_of, pose_of, start_with_shapes, undo};
+use super::{drag_by, place_of, pose_of, start_with_shapes, undo};
 use crate::api::Widget;
 use crate::context::Context;
 use crate::input::{Button, Modifier};
@@ -11,13 +11,18 @@ use crate::page::Page;
 pub fn output(context: &mut Context) -> anyhow::Result<()> {
     let (page, shapes) = start_with_shapes(context)?;
     let ball = shapes.ball;
+    // Room for more than two lines.
+    let widgets = page.wait_for_widgets(&["Fold output"])?;
+    let fold = widgets.iter().find(|widget| widget.label == "Fold output").context("No output")?;
+    let edge = (120.0, fold.rect[1] - 5.0);
+    page.drag(edge, (edge.0, edge.1 - 160.0), Button::Left, 3, &[])?;
     let first = lines(page)?.len();
     let at = place_of(page, ball, [0.0; 3])?;
     drag_by(page, at, (25.0, 10.0))?;
     let moved = pose_of(page, ball)?;
     let at = place_of(page, ball, [0.0; 3])?;
     page.drag(at, (at.0 + 20.0, at.1 + 10.0), Button::Right, 2, &[])?;
-    page.wheel(at, 2, &[Modifier::Shift])?;
+    page.wheel(at, 1, &[Modifier::Shift])?;
     page.key("ArrowLeft", &[])?;
     let shown = lines(page)?;
     let labels: Vec<&str> = shown.iter().map(|line| line.label.as_str()).collect();
@@ -33,23 +38,30 @@ pub fn output(context: &mut Context) -> anyhow::Result<()> {
     undo(page)?;
     ensure!(pose_of(page, ball)? != moved, "The return was not undone");
 
-    click_in_panel(page, "Search the history")?;
+    page.click_widget("Search the history")?;
     page.type_text("rotate")?;
     let found = lines(page)?;
     ensure!(found.len() == 1 && found[0].label.contains("Rotate"), "Found were {found:?}");
     page.key("a", &[Modifier::Control])?;
     page.key("Backspace", &[])?;
     page.key("Escape", &[])?;
-    let all = lines(page)?.len();
-    click_in_panel(page, "Clear history list")?;
+    let all = lines(page)?;
+    page.click_widget("Clear history list")?;
     ensure!(lines(page)?.is_empty(), "The list was not cleared");
     undo(page)?;
-    ensure!(lines(page)?.len() == all, "Undo brought {} of {all} lines back", lines(page)?.len());
+    let back = lines(page)?;
+    ensure!(
+        back.first().map(|line| &line.label) == all.first().map(|line| &line.label) && all.len() > 1,
+        "Undo brought {} of {} lines back",
+        back.len(),
+        all.len()
+    );
+    ensure!(back.len() == all.len(), "The panel has another height than it was given");
 
     copies(page, ball)
 }
 
-/// The lines of the history that are on screen.
+/// The lines of the history that are on screen, from above.
 fn lines(page: &mut Page) -> anyhow::Result<Vec<Widget>> {
     page.next_frame()?;
     let widgets = page.widgets()?;
@@ -57,7 +69,9 @@ fn lines(page: &mut Page) -> anyhow::Result<Vec<Widget>> {
         let bytes = widget.label.as_bytes();
         bytes.len() > 8 && bytes[0].is_ascii_digit() && bytes[2] == b':' && bytes[5] == b':'
     };
-    Ok(widgets.into_iter().filter(is_line).collect())
+    let mut lines: Vec<Widget> = widgets.into_iter().filter(is_line).collect();
+    lines.sort_by(|a, b| a.rect[1].total_cmp(&b.rect[1]));
+    Ok(lines)
 }
 
 /// Each command leaves the pose as text in the clipboard.

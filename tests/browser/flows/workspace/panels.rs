@@ -9,6 +9,7 @@ use super::{
 };
 use crate::api::PATIENCE;
 use crate::context::Context;
+use crate::input::{Button, Modifier};
 use crate::page::Page;
 use crate::poses::{angle_between, distance};
 
@@ -28,7 +29,7 @@ fn camera(page: &mut Page) -> anyhow::Result<()> {
     let given = k(page)?;
     let before = photo_view(page)?;
     click_in_panel(page, "fx")?;
-    page.key("a", &[crate::input::Modifier::Control])?;
+    page.key("a", &[Modifier::Control])?;
     page.type_text("800")?;
     ensure!(k(page)?[0][0] == 800.0, "800 was typed, fx is {}", k(page)?[0][0]);
     page.key("Enter", &[])?;
@@ -51,9 +52,8 @@ fn camera(page: &mut Page) -> anyhow::Result<()> {
 
     click_in_panel(page, "Lock camera")?;
     page.wait_for_widgets(&["Unlock camera"])?;
-    page.click_widget("fx")?;
-    page.type_text("700")?;
-    page.key("Enter", &[])?;
+    let at = reveal(page, "fx")?.center();
+    page.drag(at, (at.0 + 40.0, at.1), Button::Left, 2, &[])?;
     ensure!(k(page)? == given, "A locked camera was changed");
     click_in_panel(page, "Unlock camera")?;
     page.wait_for_widgets(&["Lock camera"])?;
@@ -66,19 +66,9 @@ fn k(page: &mut Page) -> anyhow::Result<[[f64; 3]; 3]> {
 
 fn pose_values(page: &mut Page, object: u32) -> anyhow::Result<()> {
     let before = pose_of(page, object)?;
-    type_into(page, "tx", "-12.25")?;
-    let typed = pose_of(page, object)?;
-    let [_, y, z] = translation(&before);
-    ensure!(translation(&typed) == [-12.25, y, z], "t is {:?}", translation(&typed));
-    ensure!(angle_between(&typed, &before) < 1e-7, "Typing tx turned the object");
-    undo(page)?;
-    ensure!(pose_of(page, object)? == before, "Undo did not bring tx back");
-
-    // As text: the widget's list of forms, then a matrix.
-    click_in_panel(page, "Rotation as")?;
-    page.click_widget(MATRIX)?;
+    // As text, which is the form that it begins with.
     click_in_panel(page, "Pose as text")?;
-    page.key("a", &[crate::input::Modifier::Control])?;
+    page.key("a", &[Modifier::Control])?;
     paste(page, "0 -1 0 10\n1 0 0 20\n0 0 1 500\n0 0 0 1")?;
     click_in_panel(page, "Set")?;
     let set = pose_of(page, object)?;
@@ -89,11 +79,18 @@ fn pose_values(page: &mut Page, object: u32) -> anyhow::Result<()> {
     ensure!(off < 1e-12, "The pasted matrix became {set:?}");
     undo(page)?;
     ensure!(distance(translation(&pose_of(page, object)?), translation(&before)) == 0.0, "Not undone");
+
+    click_in_panel(page, "Rotation as")?;
+    page.click_widget("Euler xyz")?;
+    type_into(page, "tx", "-12.25")?;
+    let typed = pose_of(page, object)?;
+    let [_, y, z] = translation(&before);
+    ensure!(translation(&typed) == [-12.25, y, z], "t is {:?}", translation(&typed));
+    ensure!(angle_between(&typed, &before) < 1e-7, "Typing tx turned the object");
+    undo(page)?;
+    ensure!(pose_of(page, object)? == before, "Undo did not bring tx back");
     Ok(())
 }
-
-/// The form in which a pose is text.
-const MATRIX: &str = "Matrix";
 
 fn mesh(page: &mut Page, object: u32) -> anyhow::Result<()> {
     let frame = |page: &mut Page| anyhow::Ok(object_entry(page, object)?["mesh_from_file"].clone());
