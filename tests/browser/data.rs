@@ -147,21 +147,6 @@ pub fn flat_photo(name: &str, color: [u8; 3]) -> anyhow::Result<File> {
     Ok(File::new(name, png.into_inner()))
 }
 
-/// A photo that compresses as badly as a real one, each number another.
-pub fn noisy_photo(name: &str, number: u32) -> anyhow::Result<File> {
-    let (width, height) = PHOTO_SIZE;
-    let mut value = number.wrapping_mul(747_796_405).wrapping_add(1);
-    let picture = RgbImage::from_fn(width, height, |x, y| {
-        Rgb([x + number, y + 3 * number, x + y].map(|base| {
-            value = value.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (base / 4 % 200) as u8 + (value >> 28) as u8
-        }))
-    });
-    let mut png = std::io::Cursor::new(Vec::new());
-    picture.write_to(&mut png, ImageFormat::Png)?;
-    Ok(File::new(name, png.into_inner()))
-}
-
 /// A photo of any size: fields of [`large_photo_color`].
 pub fn large_photo(name: &str, (width, height): (u32, u32)) -> anyhow::Result<File> {
     let picture = RgbImage::from_fn(width, height, |x, y| Rgb(large_photo_color(x, y)));

@@ -8,7 +8,7 @@ use image::GenericImageView as _;
 use super::idle::{Cost, cost_of_dragging};
 use crate::api::{PATIENCE, Photo};
 use crate::context::Context;
-use crate::data::{self, File, ball_ply, camera_file, camera_file_of, flat_photo, large_photo, noisy_photo};
+use crate::data::{self, File, ball_ply, camera_file, camera_file_of, flat_photo, large_photo};
 use crate::page::Page;
 use crate::poses::{axis_rotation, unprojected, with_translation};
 
@@ -107,20 +107,45 @@ pub fn very_many_photos(context: &mut Context) -> anyhow::Result<()> {
     step_through(context, 200)
 }
 
-/// Loads photos in portions, goes through all of them, and looks at all in the strip.
-fn step_through(context: &mut Context, count: u32) -> anyhow::Result<()> {
+/// Has the page make photos of noise, half a megabyte each as PNG, and load them; their bytes together.
+fn load_noise(page: &mut Page, count: u32) -> anyhow::Result<f64> {
     const PORTION: u32 = 20;
+    let mut bytes = 0.0;
+    for first in (0..count).step_by(PORTION as usize) {
+        let expression = noise_expression(first, (first + PORTION).min(count));
+        bytes += page.eval(&expression)?.as_f64().context("The photos were not loaded")?;
+    }
+    Ok(bytes)
+}
+
+fn noise_expression(first: u32, end: u32) -> String {
+    let (width, height) = data::PHOTO_SIZE;
+    format!(
+        "(async () => {{
+            const canvas = new OffscreenCanvas({width}, {height});
+            const context = canvas.getContext('2d');
+            let bytes = 0;
+            for (let number = {first}; number < {end}; number++) {{
+                const image = new ImageData({width}, {height});
+                for (let i = 0; i < image.data.length; i++) image.data[i] = 96 + Math.random() * 32;
+                for (let i = 3; i < image.data.length; i += 4) image.data[i] = 255;
+                context.putImageData(image, 0, 0);
+                const blob = await canvas.convertToBlob({{ type: 'image/png' }});
+                bytes += blob.size;
+                const name = `photo_${{String(number).padStart(3, '0')}}.png`;
+                const loaded = await window.pinpose.load([new File([blob], name)]);
+                if (loaded.problems.length) throw new Error(loaded.problems.join('; '));
+            }}
+            return bytes;
+        }})()"
+    )
+}
+
+/// Goes through all photos, and looks at all in the strip.
+fn step_through(context: &mut Context, count: u32) -> anyhow::Result<()> {
     let page = context.start("")?;
     let empty_bytes = page.perf()?.memory_bytes;
-    let mut file_bytes = 0;
-    for first in (0..count).step_by(PORTION as usize) {
-        let photos: Vec<File> = (first..(first + PORTION).min(count))
-            .map(|number| noisy_photo(&format!("photo_{number:03}.png"), number))
-            .collect::<anyhow::Result<_>>()?;
-        file_bytes += photos.iter().map(|photo| photo.bytes.len()).sum::<usize>();
-        let loaded = page.load(&photos)?;
-        ensure!(loaded.problems.is_empty(), "{}", loaded.problems.join("; "));
-    }
+    let file_bytes = load_noise(page, count)?;
     let state = page.wait_until_saved()?;
     ensure!(state.photos.len() == count as usize, "{} photos are open", state.photos.len());
     let loaded_bytes = page.perf()?.memory_bytes;
@@ -140,7 +165,7 @@ fn step_through(context: &mut Context, count: u32) -> anyhow::Result<()> {
     let cell = widgets.iter().find(|widget| widget.label.starts_with("Photo photo_"));
     let over = cell.context("The strip is not on the page")?.center();
     // Back over all, a few cells at once.
-    for _ in 0..count / 2 {
+    for _ in 0..count {
         page.wheel(over, 2, &[])?;
     }
     page.wait_for_widgets(&["Photo photo_000.png, not posed yet"])?;
@@ -148,7 +173,7 @@ fn step_through(context: &mut Context, count: u32) -> anyhow::Result<()> {
     println!(
         "   {count} photos of {:.0} kB: {:.0} MB of wasm memory empty, {:.0} loaded, {:.0} when all were seen; \
          {step_ms:.0} ms a step",
-        file_bytes as f64 / f64::from(count) / 1e3,
+        file_bytes / f64::from(count) / 1e3,
         empty_bytes / 1e6,
         loaded_bytes / 1e6,
         perf.memory_bytes / 1e6,
