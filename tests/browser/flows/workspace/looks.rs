@@ -4,7 +4,7 @@ use anyhow::ensure;
 
 use super::{click_in_panel, differing, photo_view, raw_state, reveal};
 use crate::context::Context;
-use crate::data::{Linemod, ball_ply};
+use crate::data::{File, Linemod};
 use crate::flows::start_with_sample;
 use crate::input::Button;
 use crate::page::Page;
@@ -18,12 +18,13 @@ const LEAST_DIFFERENCE: usize = 100;
 pub fn looks(context: &mut Context) -> anyhow::Result<()> {
     let (page, state) = start_with_sample(context, &Linemod::open()?)?;
     // Something behind the object, for X-ray.
-    page.load(&[ball_ply("ball.ply", 20.0, 16, 8)])?;
+    page.load(&[painted()])?;
     let photo = state.shown_photo()?.id;
     let before = state.selected_pose()?;
     let ball = page.state()?.objects.iter().map(|object| object.id).find(|id| *id != before.object);
     let ball = ball.ok_or_else(|| anyhow::anyhow!("The ball was not loaded"))?;
-    let behind = [0, 1, 2].map(|axis| before.camera_from_object[axis][3] * 1.3);
+    let [right, down, away] = [0, 1, 2].map(|axis| before.camera_from_object[axis][3]);
+    let behind = [right + 30.0, down, away + 60.0];
     let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     page.set_pose(photo, ball, with_translation([x, y, z], behind))?;
     super::select(page, before.object)?;
@@ -66,6 +67,13 @@ pub fn looks(context: &mut Context) -> anyhow::Result<()> {
         |page| page.key("k", &[]).and_then(|()| page.key("o", &[])),
         |page| click_in_panel(page, "Reset look"),
     )
+}
+
+/// A square of four colours, that reaches out from behind the sample's object.
+fn painted() -> File {
+    let corners = [("-50 -50", "1 0 0"), ("50 -50", "0 1 0"), ("50 50", "0 0 1"), ("-50 50", "1 1 0")];
+    let vertices = corners.map(|(place, color)| format!("v {place} 0 {color}\n"));
+    File::new("painted.obj", vertices.concat() + "f 1 2 3\nf 1 3 4\n")
 }
 
 /// O goes through all modes; each picture is unlike every other.
