@@ -41,25 +41,22 @@ pub fn looks(context: &mut Context) -> anyhow::Result<()> {
         |page| page.key("i", &[]),
         |page| page.key("i", &[]).and_then(|()| page.key("i", &[])),
     )?;
-    for name in ["brightness", "contrast", "saturation"] {
-        let label = format!("Photo {name}");
-        let rail = |page: &mut Page| {
-            let widget = reveal(page, &label)?;
-            anyhow::Ok((widget.rect[0] + 75.0, widget.center().1))
-        };
-        there_and_back(
-            page,
-            name,
-            |page| {
-                let at = rail(page)?;
-                page.click(at, Button::Left, &[])
-            },
-            |page| {
-                let at = rail(page)?;
-                page.double_click(at, Button::Left)
-            },
-        )?;
-    }
+    let rail = |page: &mut Page| {
+        let widget = reveal(page, "Photo brightness")?;
+        anyhow::Ok((widget.rect[0] + 75.0, widget.center().1))
+    };
+    there_and_back(
+        page,
+        "brightness",
+        |page| {
+            let at = rail(page)?;
+            page.click(at, Button::Left, &[])
+        },
+        |page| {
+            let at = rail(page)?;
+            page.double_click(at, Button::Left)
+        },
+    )?;
     // Several at once, and all back by one click.
     there_and_back(
         page,
@@ -85,7 +82,8 @@ fn modes(page: &mut Page) -> anyhow::Result<()> {
         pictures.push(photo_view(page)?);
         page.key("o", &[])?;
     }
-    ensure!(photo_view(page)? == pictures[0], "After all modes the first one looks different");
+    let left = differing(&pictures[0], &photo_view(page)?);
+    ensure!(left == 0, "After all modes {left} pixels of the first one are different");
     let mut least = (usize::MAX, "", "");
     for (index, a) in pictures.iter().enumerate() {
         for (other, b) in pictures.iter().enumerate().take(index) {

@@ -124,6 +124,8 @@ fn photo_view(page: &mut Page) -> anyhow::Result<RgbaImage> {
 
 fn area(page: &mut Page, [x, y, width, height]: [f64; 4]) -> anyhow::Result<RgbaImage> {
     page.mouse_move(OUT_OF_THE_WAY)?;
+    // Messages lie over the view, and go by themselves.
+    page.wait_for_state("state.notices.length === 0", PATIENCE)?;
     let deadline = Instant::now() + PATIENCE;
     let [x, y, width, height] = [x, y, width, height].map(|value| value.round().max(0.0) as u32);
     let crop = |screenshot: &RgbaImage| image::imageops::crop_imm(screenshot, x, y, width, height).to_image();
