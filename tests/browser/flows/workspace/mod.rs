@@ -44,6 +44,8 @@ const BALL_RADIUS_MM: f32 = 25.0;
 const BALL_AT: Vector = [-40.0, 5.0, 400.0];
 const DISC_AT: Vector = [45.0, -5.0, 420.0];
 
+const CHOOSERS_HEIGHT: f64 = 48.0;
+
 /// Nudges less than half a second apart are one.
 const BETWEEN_BURSTS: Duration = Duration::from_millis(700);
 
@@ -113,14 +115,17 @@ fn undo(page: &mut Page) -> anyhow::Result<()> {
     page.key("z", &[Modifier::Control])
 }
 
-/// Takes the mouse away, lets what moves come to rest, and gives the photo view as it is seen.
+/// Takes the mouse away, lets what moves come to rest, and gives the photo view as it is seen, without what lies over its
+/// top and its foot: the choosers name what is chosen.
 fn photo_view(page: &mut Page) -> anyhow::Result<RgbaImage> {
-    let rect = page.state()?.viewport.rect;
-    area(page, rect)
+    let [x, y, width, height] = page.state()?.viewport.rect;
+    area(page, [x, y + CHOOSERS_HEIGHT, width, height - 2.0 * CHOOSERS_HEIGHT])
 }
 
 fn area(page: &mut Page, [x, y, width, height]: [f64; 4]) -> anyhow::Result<RgbaImage> {
     page.mouse_move(OUT_OF_THE_WAY)?;
+    // Messages lie over the view, and go by themselves.
+    page.wait_for_state("state.notices.length === 0", PATIENCE)?;
     let deadline = Instant::now() + PATIENCE;
     let [x, y, width, height] = [x, y, width, height].map(|value| value.round().max(0.0) as u32);
     let crop = |screenshot: &RgbaImage| image::imageops::crop_imm(screenshot, x, y, width, height).to_image();

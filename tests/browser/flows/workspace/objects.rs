@@ -50,7 +50,7 @@ pub fn objects(context: &mut Context) -> anyhow::Result<()> {
     lock(page, ball)?;
     link(page, ball, shapes.disc)?;
 
-    row_menu(page, "globe", "Duplicate")?;
+    page.key("d", &[Modifier::Control])?;
     let state = page.wait_for_state("state.objects.length === 3", PATIENCE)?;
     let names: Vec<&str> = state.objects.iter().map(|object| object.name.as_str()).collect();
     println!("   after Duplicate: {names:?}");
