@@ -167,7 +167,6 @@ fn picture(mesh: &Arc<MeshAsset>, mode: OverlayMode) -> Picture {
         widths: LineWidths::for_scale(1.0),
         surroundings: None,
         background: Rgb([24, 26, 31]),
-        photo_opacity: 1.0,
         in_motion: true,
     }
 }
