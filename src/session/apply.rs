@@ -140,11 +140,16 @@ impl Session {
         edit: impl FnOnce(&mut Scene),
     ) -> Applied {
         let goes_on = self.burst.as_ref().is_some_and(|burst| burst.continues(&key, now_ms));
-        if !goes_on {
-            self.change(key.label, edit)?;
-        } else {
+        if goes_on {
             edit(&mut self.scene);
             self.touched();
+        } else {
+            let before = self.revision;
+            self.change(key.label, edit)?;
+            if self.revision == before {
+                // Nothing changed, so there is no undo step yet that what follows could belong to.
+                return Ok(Vec::new());
+            }
         }
         self.burst = Some(Burst { key, last_ms: now_ms });
         Ok(Vec::new())

@@ -270,6 +270,12 @@ fn a_slider_under_the_hand_is_one_undo_step() {
         session.apply(Command::EditObject(object, ObjectChange::Opacity(opacity)), time_ms).unwrap();
     }
     assert_eq!(session.scene().objects[0].opacity, 0.4);
+    // A slider that is pressed where it stands, and then moved, is undone too.
+    let later = NOW_MS + 10_000.0;
+    session.apply(Command::EditObject(object, ObjectChange::Opacity(0.4)), later).unwrap();
+    session.apply(Command::EditObject(object, ObjectChange::Opacity(0.9)), later + 50.0).unwrap();
+    press(&mut session, CommandId::Undo);
+    assert_eq!(session.scene().objects[0].opacity, 0.4);
     press(&mut session, CommandId::Undo);
     assert_eq!(session.scene().objects[0].opacity, 0.7);
 }

@@ -8,7 +8,7 @@ use image::GenericImageView as _;
 use super::idle::{Cost, cost_of_dragging};
 use crate::api::{PATIENCE, Photo};
 use crate::context::Context;
-use crate::data::{self, File, ball_ply, camera_file, camera_file_of, flat_photo, large_photo};
+use crate::data::{self, ball_ply, camera_file, camera_file_of, flat_photo, large_photo};
 use crate::page::Page;
 use crate::poses::{axis_rotation, unprojected, with_translation};
 
