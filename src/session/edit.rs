@@ -143,6 +143,12 @@ impl Session {
             for object in scene.objects.iter_mut().filter(|object| selection.contains(&object.id)) {
                 object.link = None;
             }
+            // Who is left alone in a group is in none.
+            let links: Vec<Option<u32>> = scene.objects.iter().map(|object| object.link).collect();
+            for object in &mut scene.objects {
+                let members = links.iter().filter(|link| **link == object.link).count();
+                object.link = object.link.filter(|_| members > 1);
+            }
         })
     }
 }

@@ -123,6 +123,7 @@ fn link(page: &mut Page, ball: u32, disc: u32) -> anyhow::Result<()> {
     ensure!([pose_of(page, ball)?, pose_of(page, disc)?] == before, "One undo did not bring both back");
     super::select(page, ball)?;
     page.key("l", &[Modifier::Control, Modifier::Shift])?;
-    ensure!(object_entry(page, ball)?["link"].is_null(), "They are still linked");
+    ensure!(object_entry(page, ball)?["link"].is_null(), "The ball is still linked");
+    ensure!(object_entry(page, disc)?["link"].is_null(), "The disc is linked with nobody");
     Ok(())
 }
