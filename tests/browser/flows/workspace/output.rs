@@ -26,7 +26,7 @@ pub fn output(context: &mut Context) -> anyhow::Result<()> {
     page.key("ArrowLeft", &[])?;
     let shown = lines(page)?;
     let labels: Vec<&str> = shown.iter().map(|line| line.label.as_str()).collect();
-    println!("   {} lines before, then {labels:?}", first);
+    println!("   {first} lines before, then {labels:?}");
     ensure!(shown.len() == first + 4, "4 gestures left {} lines", shown.len() - first);
     for (line, word) in shown.iter().zip(["Nudge", "Change depth", "Rotate", "Move"]) {
         ensure!(line.label.contains(word) && line.label.contains("ball"), "{} is no {word}", line.label);
