@@ -1,6 +1,7 @@
 //! How the meshes are drawn over the photo, and what helps to compare: each changes pixels, and goes away without a trace.
 
 use anyhow::ensure;
+use image::RgbaImage;
 
 use super::{click_in_panel, differing, photo_view, raw_state, reveal};
 use crate::context::Context;
@@ -30,13 +31,14 @@ pub fn looks(context: &mut Context) -> anyhow::Result<()> {
     super::select(page, before.object)?;
     page.key("f", &[])?;
 
-    modes(page)?;
-    held(page)?;
+    let plain = modes(page)?;
+    held(page, &plain)?;
     for (key, what) in [("j", "wipe"), ("k", "difference"), ("z", "X-ray"), ("u", "outline")] {
-        there_and_back(page, what, |page| page.key(key, &[]), |page| page.key(key, &[]))?;
+        there_and_back(page, &plain, what, |page| page.key(key, &[]), |page| page.key(key, &[]))?;
     }
     there_and_back(
         page,
+        &plain,
         "photo only and mesh only",
         |page| page.key("i", &[]),
         |page| page.key("i", &[]).and_then(|()| page.key("i", &[])),
@@ -47,6 +49,7 @@ pub fn looks(context: &mut Context) -> anyhow::Result<()> {
     };
     there_and_back(
         page,
+        &plain,
         "brightness",
         |page| {
             let at = rail(page)?;
@@ -60,6 +63,7 @@ pub fn looks(context: &mut Context) -> anyhow::Result<()> {
     // Several at once, and all back by one click.
     there_and_back(
         page,
+        &plain,
         "reset",
         |page| page.key("k", &[]).and_then(|()| page.key("o", &[])),
         |page| click_in_panel(page, "Reset look"),
@@ -73,8 +77,8 @@ fn painted() -> File {
     File::new("painted.obj", vertices.concat() + "f 1 2 3\nf 1 3 4\n")
 }
 
-/// O goes through all modes; each picture is unlike every other.
-fn modes(page: &mut Page) -> anyhow::Result<()> {
+/// O goes through all modes; each picture is unlike every other. Gives the first.
+fn modes(page: &mut Page) -> anyhow::Result<RgbaImage> {
     let mut pictures = Vec::new();
     for mode in MODES {
         let shown = raw_state(page)?["view"]["overlay_mode"].clone();
@@ -92,35 +96,34 @@ fn modes(page: &mut Page) -> anyhow::Result<()> {
     }
     println!("   the modes most alike: {} pixels between {} and {}", least.0, least.1, least.2);
     ensure!(least.0 > LEAST_DIFFERENCE, "{} and {} are {} pixels apart", least.1, least.2, least.0);
-    Ok(())
+    Ok(pictures.swap_remove(0))
 }
 
 /// H hides as long as it is held.
-fn held(page: &mut Page) -> anyhow::Result<()> {
-    let before = photo_view(page)?;
+fn held(page: &mut Page, before: &RgbaImage) -> anyhow::Result<()> {
     page.key_down("h")?;
     let hidden = photo_view(page)?;
     page.key_up("h")?;
     let after = photo_view(page)?;
-    let count = differing(&before, &hidden);
+    let count = differing(before, &hidden);
     println!("   H held: {count} pixels changed");
     ensure!(count > LEAST_DIFFERENCE, "H hides nothing");
-    ensure!(after == before, "After H the picture is another one");
+    ensure!(after == *before, "After H the picture is another one");
     Ok(())
 }
 
 fn there_and_back(
     page: &mut Page,
+    before: &RgbaImage,
     what: &str,
     there: impl FnOnce(&mut Page) -> anyhow::Result<()>,
     back: impl FnOnce(&mut Page) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
-    let before = photo_view(page)?;
     there(page)?;
     let changed = photo_view(page)?;
     back(page)?;
     let after = photo_view(page)?;
-    let (count, left) = (differing(&before, &changed), differing(&before, &after));
+    let (count, left) = (differing(before, &changed), differing(before, &after));
     println!("   {what}: {count} pixels changed");
     ensure!(count > LEAST_DIFFERENCE, "{what} changes {count} pixels");
     ensure!(left == 0, "After {what} {left} pixels are not back");

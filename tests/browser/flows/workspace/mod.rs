@@ -115,30 +115,41 @@ fn undo(page: &mut Page) -> anyhow::Result<()> {
     page.key("z", &[Modifier::Control])
 }
 
-/// Takes the mouse away, lets what moves come to rest, and gives the photo view as it is seen, without what lies over its
-/// top and its foot: the choosers name what is chosen.
+/// Takes the mouse away, and gives the photo view as it is seen, without what lies over its top and its foot: the choosers
+/// name what is chosen.
 fn photo_view(page: &mut Page) -> anyhow::Result<RgbaImage> {
     let [x, y, width, height] = page.state()?.viewport.rect;
+    clear_view(page)?;
+    page.next_frame()?;
     area(page, [x, y + CHOOSERS_HEIGHT, width, height - 2.0 * CHOOSERS_HEIGHT])
 }
 
-fn area(page: &mut Page, [x, y, width, height]: [f64; 4]) -> anyhow::Result<RgbaImage> {
-    page.mouse_move(OUT_OF_THE_WAY)?;
-    // Messages lie over the view, and go by themselves.
-    page.wait_for_state("state.notices.length === 0", PATIENCE)?;
+/// The same of any rectangle of the page, once what moves in it has come to rest.
+fn at_rest(page: &mut Page, rect: [f64; 4]) -> anyhow::Result<RgbaImage> {
+    clear_view(page)?;
     let deadline = Instant::now() + PATIENCE;
-    let [x, y, width, height] = [x, y, width, height].map(|value| value.round().max(0.0) as u32);
-    let crop = |screenshot: &RgbaImage| image::imageops::crop_imm(screenshot, x, y, width, height).to_image();
-    let mut before = crop(&page.screenshot()?);
+    let mut before = area(page, rect)?;
     loop {
         page.next_frame()?;
-        let now = crop(&page.screenshot()?);
+        let now = area(page, rect)?;
         if now == before {
             return Ok(now);
         }
         ensure!(Instant::now() < deadline, "The picture does not come to rest");
         before = now;
     }
+}
+
+/// No mouse in the view, and no messages over it: they go by themselves.
+fn clear_view(page: &mut Page) -> anyhow::Result<()> {
+    page.mouse_move(OUT_OF_THE_WAY)?;
+    page.wait_for_state("state.notices.length === 0", PATIENCE)?;
+    Ok(())
+}
+
+fn area(page: &mut Page, rect: [f64; 4]) -> anyhow::Result<RgbaImage> {
+    let [x, y, width, height] = rect.map(|value| value.round().max(0.0) as u32);
+    Ok(image::imageops::crop_imm(&page.screenshot()?, x, y, width, height).to_image())
 }
 
 fn differing(a: &RgbaImage, b: &RgbaImage) -> usize {

@@ -1,15 +1,20 @@
 //! The view of photo and objects from anywhere, alone and beside the photo view.
 
+use std::time::Duration;
+
 use anyhow::ensure;
 
 use super::{
-    area, differing, middle_of, photo_view, pose_of, raw_state, rect_of, start_with_shapes, translation,
+    at_rest, differing, middle_of, photo_view, pose_of, raw_state, rect_of, start_with_shapes, translation,
 };
 use crate::api::PATIENCE;
 use crate::context::Context;
 use crate::input::Button;
 use crate::page::Page;
 use crate::poses::{axis_angle_between, norm, rotation};
+
+/// Longer than the view takes to where it goes.
+const TURNING: Duration = Duration::from_millis(500);
 
 pub fn scene_view(context: &mut Context) -> anyhow::Result<()> {
     let (page, shapes) = start_with_shapes(context)?;
@@ -29,15 +34,18 @@ pub fn scene_view(context: &mut Context) -> anyhow::Result<()> {
     page.wait_for_state("state.arrangement === 'scene' && state.viewport.rect[2] < 1", PATIENCE).ok();
     let rect = rect_of(&raw_state(page)?, "sceneViewport")?;
     let scene = page.state()?;
-    let start = area(page, rect)?;
+    let start = at_rest(page, rect)?;
     page.click_widget("View from +X")?;
+    std::thread::sleep(TURNING);
     let from_x = at_rest(page, rect)?;
     page.click_widget("View from -Y")?;
+    std::thread::sleep(TURNING);
     let from_above = at_rest(page, rect)?;
     let ground = (rect[0] + 30.0, rect[1] + rect[3] - 40.0);
     page.drag(ground, (ground.0 + 60.0, ground.1 - 40.0), Button::Left, 3, &[])?;
     let orbited = at_rest(page, rect)?;
     page.key("Home", &[])?;
+    std::thread::sleep(TURNING);
     let reset = at_rest(page, rect)?;
     let counts = [(&start, &from_x), (&from_x, &from_above), (&from_above, &orbited), (&orbited, &reset)]
         .map(|(a, b)| differing(a, b));
@@ -69,10 +77,4 @@ fn drag_beside(page: &mut Page, object: u32) -> anyhow::Result<()> {
 fn wait_for_arrangement(page: &mut Page, wanted: &str) -> anyhow::Result<()> {
     page.wait_for_state(&format!("state.arrangement === '{wanted}'"), PATIENCE)?;
     Ok(())
-}
-
-/// Once the view has come to where it goes.
-fn at_rest(page: &mut Page, rect: [f64; 4]) -> anyhow::Result<image::RgbaImage> {
-    std::thread::sleep(std::time::Duration::from_millis(500));
-    area(page, rect)
 }
