@@ -252,6 +252,23 @@ impl Scene {
         }
     }
 
+    /// Lets objects move by themselves.
+    pub fn unlink(&mut self, ids: &[ObjectId]) {
+        for object in self.objects.iter_mut().filter(|object| ids.contains(&object.id)) {
+            object.link = None;
+        }
+        self.dissolve_lone_links();
+    }
+
+    /// Who is left alone in a group is in none.
+    fn dissolve_lone_links(&mut self) {
+        let links: Vec<Option<u32>> = self.objects.iter().map(|object| object.link).collect();
+        for object in &mut self.objects {
+            let members = links.iter().filter(|link| **link == object.link).count();
+            object.link = object.link.filter(|_| members > 1);
+        }
+    }
+
     fn free_object_name(&self, wanted: &str) -> String {
         let is_free = |name: &str| self.objects.iter().all(|object| object.name != name);
         if is_free(wanted) {
@@ -270,6 +287,7 @@ impl Scene {
 
     pub fn remove_object(&mut self, id: ObjectId) {
         self.objects.retain(|object| object.id != id);
+        self.dissolve_lone_links();
         for mask in self.masks.iter_mut().filter(|mask| mask.object == Some(id)) {
             mask.object = None;
         }

@@ -140,15 +140,7 @@ impl Session {
     pub(super) fn unlink_selected(&mut self) -> Applied {
         let selection = self.selection();
         self.change("Unlink objects", |scene| {
-            for object in scene.objects.iter_mut().filter(|object| selection.contains(&object.id)) {
-                object.link = None;
-            }
-            // Who is left alone in a group is in none.
-            let links: Vec<Option<u32>> = scene.objects.iter().map(|object| object.link).collect();
-            for object in &mut scene.objects {
-                let members = links.iter().filter(|link| **link == object.link).count();
-                object.link = object.link.filter(|_| members > 1);
-            }
+            scene.unlink(&selection);
         })
     }
 }

@@ -108,6 +108,10 @@ fn linked_objects_move_as_one_body() {
     let second_before = pose_of(&session, second);
     run(&mut session, Command::Nudge(Nudge::Left, 10.0));
     assert_eq!(pose_of(&session, second), second_before);
+    press(&mut session, CommandId::SelectAll);
+    press(&mut session, CommandId::LinkObjects);
+    run(&mut session, Command::RemoveObject(second.1));
+    assert_eq!(session.scene().objects[0].link, None, "nobody is left linked alone");
 }
 
 #[test]
