@@ -129,17 +129,22 @@ impl Page {
 
     /// Turns the wheel over a point by so many notches, quickly; positive is up, away from the user.
     pub fn wheel(&mut self, at: Point, notches: i32, modifiers: &[Modifier]) -> anyhow::Result<()> {
-        // Pixels a notch, down, as Chromium reports a wheel.
-        let delta = if notches > 0 { -100 } else { 100 };
+        // Pixels a notch, down, as Chromium reports a wheel; one that is spun fast tells several notches at once.
+        const NOTCH_PX: i32 = -100;
+        const MOST_AT_ONCE: i32 = 10;
         let bits = bits(modifiers);
         self.hold(modifiers, |page| {
             page.mouse_move(at)?;
-            for _ in 0..notches.unsigned_abs() {
+            let mut left = notches;
+            while left != 0 {
+                let now = left.clamp(-MOST_AT_ONCE, MOST_AT_ONCE);
+                let delta = now * NOTCH_PX;
                 page.send_mouse(
                     "mouseWheel",
                     at,
                     json!({ "deltaX": 0, "deltaY": delta, "modifiers": bits }),
                 )?;
+                left -= now;
             }
             page.next_frame()
         })
