@@ -10,9 +10,11 @@ use pinpose::formats::NamedFile;
 use pinpose::interact::Hands;
 use pinpose::platform::{SceneHeading, SceneId, SceneSummary};
 use pinpose::session::{Command, CommandId, Session};
-use pinpose::ui::{self, Busy, Saving, Surroundings, ThemeChoice, UiState};
+use pinpose::ui::{self, Busy, Surroundings, ThemeChoice, UiState};
 
-use crate::support::{CAMERA_JSON, NOW_MS, drop_files, flat_photo, small_session, text_file};
+use crate::support::{
+    CAMERA_JSON, NOW_MS, drop_files, flat_photo, quiet_surroundings, small_session, text_file,
+};
 
 struct Chrome {
     session: Session,
@@ -40,17 +42,12 @@ fn harness_of(session: Session, size: [f32; 2], pixels_per_point: f32) -> (Harne
             let pressed = ui.ctx().input_mut(|input| ui::pressed_commands(input, keymap));
             commands.extend(pressed.into_iter().map(|pressed| Command::Run(pressed.id)));
         }
+        let hands = Hands::default();
         let around = Surroundings {
-            hands: &Hands::default(),
-            renderer: None,
-            pixels: None,
-            masks: None,
-            saving: Saving::Saved,
             busy: busy.clone(),
-            update_ready: false,
-            files_hover: false,
             scenes,
             store: ui::StoreView { now_ms: NOW_MS, ..ui::StoreView::default() },
+            ..quiet_surroundings(&hands)
         };
         let asked = ui::draw(ui, session, &around, state);
         *cancelled |= asked.cancel_loading;

@@ -9,9 +9,11 @@ use pinpose::formats::PosesAs;
 use pinpose::interact::Hands;
 use pinpose::math::Pose;
 use pinpose::session::{Command, CommandId, Session};
-use pinpose::ui::{self, Saving, Surroundings, UiState};
+use pinpose::ui::{self, UiState};
 
-use crate::support::{CAMERA_JSON, NOW_MS, drop_files, flat_photo, small_session, text_file};
+use crate::support::{
+    CAMERA_JSON, NOW_MS, drop_files, flat_photo, quiet_surroundings, small_session, text_file,
+};
 
 /// A session behind the interface; commands are applied as the program does it.
 fn harness(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>) {
@@ -47,18 +49,8 @@ fn harness_of(session: Session, size: [f32; 2]) -> (Harness<'static>, Rc<RefCell
     let mut state = UiState::default();
     let harness = Harness::builder().with_size(size).build_ui(move |ui| {
         ui::apply_theme(ui.ctx());
-        let around = Surroundings {
-            hands: &Hands::default(),
-            renderer: None,
-            pixels: None,
-            masks: None,
-            saving: Saving::Saved,
-            busy: None,
-            update_ready: false,
-            files_hover: false,
-            scenes: &[],
-            store: ui::StoreView::default(),
-        };
+        let hands = Hands::default();
+        let around = quiet_surroundings(&hands);
         let asked = ui::draw(ui, &shared.borrow(), &around, &mut state);
         for command in asked.commands {
             shared.borrow_mut().apply(command, NOW_MS).unwrap();

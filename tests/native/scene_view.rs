@@ -14,9 +14,9 @@ use pinpose::interact::{
 use pinpose::math::Pose;
 use pinpose::scene::PoseSource;
 use pinpose::session::{Arrangement, Command, CommandId, ObjectChange, Session};
-use pinpose::ui::{self, Saving, Surroundings, UiState};
+use pinpose::ui::{self, UiState};
 
-use crate::support::{NOW_MS, box_mesh, drop_files, flat_photo, small_session};
+use crate::support::{NOW_MS, box_mesh, drop_files, flat_photo, quiet_surroundings, small_session};
 
 struct Hand<V> {
     session: Session,
@@ -290,18 +290,7 @@ fn harness(session: Session) -> (Harness<'static>, Rc<RefCell<(Session, Hands)>>
         let mut borrowed = of_ui.borrow_mut();
         let (session, hands) = &mut *borrowed;
         hands.scene_view.advance(ui.input(|input| input.time));
-        let around = Surroundings {
-            hands,
-            renderer: None,
-            pixels: None,
-            masks: None,
-            scenes: &[],
-            store: ui::StoreView::default(),
-            saving: Saving::Saved,
-            busy: None,
-            update_ready: false,
-            files_hover: false,
-        };
+        let around = quiet_surroundings(hands);
         let asked = ui::draw(ui, session, &around, &mut state);
         if let Some(moved) = asked.scene_move {
             hands.move_scene(moved, session);

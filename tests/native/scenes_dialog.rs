@@ -9,9 +9,9 @@ use egui_kittest::kittest::Queryable as _;
 use pinpose::interact::Hands;
 use pinpose::platform::{SceneHeading, SceneId, SceneSummary, StorageUse};
 use pinpose::session::Session;
-use pinpose::ui::{self, Saving, SceneRequest, StoreView, Surroundings, UiState};
+use pinpose::ui::{self, SceneRequest, StoreView, Surroundings, UiState};
 
-use crate::support::{NOW_MS, small_session};
+use crate::support::{NOW_MS, quiet_surroundings, small_session};
 
 type Requests = Rc<RefCell<Vec<SceneRequest>>>;
 
@@ -51,15 +51,8 @@ fn harness(
     let harness = Harness::builder().with_size([1024.0, 720.0]).build_ui(move |ui| {
         ui::apply_theme(ui.ctx());
         let usage = StorageUse { used_bytes: 12_700_000, quota_bytes: Some(2_100_000_000) };
+        let hands = Hands::default();
         let around = Surroundings {
-            hands: &Hands::default(),
-            renderer: None,
-            pixels: None,
-            masks: None,
-            saving: Saving::Saved,
-            busy: None,
-            update_ready: false,
-            files_hover: false,
             scenes: &scenes,
             store: StoreView {
                 open_scene: scenes.first().map(|scene| &scene.id),
@@ -67,6 +60,7 @@ fn harness(
                 usage: Some(usage),
                 now_ms: NOW_MS,
             },
+            ..quiet_surroundings(&hands)
         };
         let asked = ui::draw(ui, &session, &around, &mut state);
         asked_for.borrow_mut().extend(asked.scene_requests);

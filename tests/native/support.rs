@@ -4,8 +4,26 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pinpose::formats::{NamedFile, Parsed, PosesAs, classify, parse_text_or_archive, read_mesh, read_photo};
+use pinpose::interact::Hands;
 use pinpose::render::Renderer;
 use pinpose::session::{Batch, Command, Effect, Session};
+use pinpose::ui::{Saving, StoreView, Surroundings};
+
+/// What is around an interface with nothing going on: no GPU, no decoded photo, nothing stored, nothing waited for.
+pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
+    Surroundings {
+        hands,
+        renderer: None,
+        pixels: None,
+        masks: None,
+        saving: Saving::Saved,
+        busy: None,
+        update_ready: false,
+        files_hover: false,
+        scenes: &[],
+        store: StoreView::default(),
+    }
+}
 
 /// A time for commands: any fixed one replays the same.
 pub const NOW_MS: f64 = 1_700_000_000_000.0;
