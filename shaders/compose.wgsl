@@ -156,12 +156,16 @@ fn fs_backdrop(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32>
     return vec4<f32>(backdrop_color(target_position, window_texel(target_position)), 1.0);
 }
 
+// A pixel is on one side of a wipe or the other by its centre.
+fn is_wiped(target_position: vec2<f32>) -> bool {
+    return frame.shown.z > 0.0 && target_position.x >= frame.shown.y;
+}
+
 // Overlay and outlines, premultiplied, to be blended over what lies below.
 @fragment
 fn fs_overlay(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let target_position = position.xy - frame.target_rect.xy;
-    // A pixel is on one side of a wipe or the other by its centre.
-    if (frame.shown.z > 0.0 && target_position.x >= frame.shown.y) {
+    if (is_wiped(target_position)) {
         discard;
     }
     let texel = window_texel(target_position);
@@ -176,7 +180,7 @@ fn fs_overlay(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> 
 @fragment
 fn fs_difference(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let target_position = position.xy - frame.target_rect.xy;
-    if (frame.shown.z > 0.0 && target_position.x >= frame.shown.y) {
+    if (is_wiped(target_position)) {
         discard;
     }
     let texel = window_texel(target_position);

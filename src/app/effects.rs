@@ -27,11 +27,12 @@ impl PinPose {
             Effect::ZoomToObject => self.show(self.session.selected()),
             Effect::FitPhoto => self.show(None),
             Effect::Notify(notice) => self.notify(notice),
-            effect => {
-                let ctx = self.ctx.clone();
-                if let Some(left) = self.ui_state.take_effect(effect, &ctx) {
-                    log::debug!("{left:?} is not carried out");
-                }
+            Effect::AskForPose
+            | Effect::TogglePalette
+            | Effect::ToggleShortcuts
+            | Effect::TogglePanels
+            | Effect::ToggleTheme => {
+                self.ui_state.take_effect(effect, &self.ctx);
             }
         }
     }

@@ -2,7 +2,8 @@
 
 use crate::math::Pose;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// From the least that was done to the most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AnnotationState {
     /// At the start pose; nobody has moved it.
     Untouched,

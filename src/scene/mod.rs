@@ -147,6 +147,19 @@ impl Scene {
         self.objects.iter().filter_map(move |object| Some((object, self.annotation(photo, object.id)?)))
     }
 
+    /// What has been done in a photo: the least of what has been done with its objects; `None` where it has none.
+    pub fn photo_state(&self, photo: PhotoId) -> Option<AnnotationState> {
+        self.annotations.range(poses_in(photo)).map(|(_, annotation)| annotation.state).min()
+    }
+
+    /// The poses of one photo, to be changed.
+    pub fn annotations_in_mut(
+        &mut self,
+        photo: PhotoId,
+    ) -> impl Iterator<Item = (ObjectId, &mut Annotation)> {
+        self.annotations.range_mut(poses_in(photo)).map(|((_, object), annotation)| (*object, annotation))
+    }
+
     /// Adds a photo with a guessed camera, or finds the one with the same content.
     pub fn add_photo(&mut self, asset: Arc<PhotoAsset>) -> PhotoId {
         if let Some(same) = self.photos.iter().find(|photo| photo.asset.sha256 == asset.sha256) {
@@ -317,9 +330,7 @@ impl Scene {
         if !changed {
             return;
         }
-        for ((_, object), annotation) in
-            self.annotations.range_mut((id, ObjectId(0))..=(id, ObjectId(u32::MAX)))
-        {
+        for ((_, object), annotation) in self.annotations.range_mut(poses_in(id)) {
             if annotation.state != AnnotationState::Untouched {
                 annotation.camera_changed = true;
             } else if let Some(object) = self.objects.iter().find(|candidate| candidate.id == *object) {
@@ -339,6 +350,11 @@ impl Scene {
         self.next_id += 1;
         self.next_id
     }
+}
+
+/// Where a photo's poses are among all.
+fn poses_in(photo: PhotoId) -> std::ops::RangeInclusive<(PhotoId, ObjectId)> {
+    (photo, ObjectId(0))..=(photo, ObjectId(u32::MAX))
 }
 
 /// A file's name without folders and extension.

@@ -31,7 +31,7 @@ impl Session {
     pub(super) fn reopen(&mut self) -> Applied {
         let Some(photo) = self.photo else { return Ok(Vec::new()) };
         self.change("Reopen", |scene| {
-            for ((_, _), annotation) in in_photo_mut(scene, photo) {
+            for (_, annotation) in scene.annotations_in_mut(photo) {
                 if annotation.state == AnnotationState::Confirmed {
                     annotation.state = AnnotationState::Posed;
                 }
@@ -46,11 +46,9 @@ impl Session {
     }
 
     fn progress_notice(&self) -> Notice {
-        let states = |photo: PhotoId| self.scene.objects_in(photo).map(|(_, annotation)| annotation.state);
-        let open = self.scene.photos.iter().filter(|photo| {
-            let mut states = states(photo.id).peekable();
-            states.peek().is_none() || states.any(|state| state != AnnotationState::Confirmed)
-        });
+        let photos = self.scene.photos.iter();
+        let open =
+            photos.filter(|photo| self.scene.photo_state(photo.id) != Some(AnnotationState::Confirmed));
         match open.count() {
             0 => Notice::info("Every photo is confirmed"),
             1 => Notice::info("Confirmed. One photo is not confirmed yet"),
@@ -59,20 +57,13 @@ impl Session {
     }
 }
 
-fn in_photo_mut(
-    scene: &mut Scene,
-    photo: PhotoId,
-) -> impl Iterator<Item = (&(PhotoId, ObjectId), &mut Annotation)> {
-    scene.annotations.range_mut((photo, ObjectId(0))..=(photo, ObjectId(u32::MAX)))
-}
-
 fn confirm(scene: &mut Scene, photo: PhotoId) -> Vec<ObjectId> {
     let mut confirmed = Vec::new();
-    for ((_, object), annotation) in in_photo_mut(scene, photo) {
+    for (object, annotation) in scene.annotations_in_mut(photo) {
         if annotation.state != AnnotationState::Untouched {
             annotation.state = AnnotationState::Confirmed;
             annotation.camera_changed = false;
-            confirmed.push(*object);
+            confirmed.push(object);
         }
     }
     confirmed

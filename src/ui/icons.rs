@@ -167,6 +167,9 @@ fn draw_turn(icon: Icon, line: &Line<'_>) {
     };
     let clockwise = arc((7.0, 8.0), 5.0, 170.0, 350.0);
     let head = [(12.8, 3.6), (12.0, 7.4), (8.4, 6.2)];
+    let flat: Vec<(f32, f32)> =
+        arc((7.0, 6.5), 5.5, 160.0, 20.0).into_iter().map(|(x, y)| (x, 4.5 + y * 0.5)).collect();
+    let flat_head = [(9.4, 7.4), (12.6, 7.9), (11.4, 11.2)];
     match icon {
         Icon::Roll { left } => {
             let turn = |x: f32, y: f32| if left { (14.0 - x, y) } else { (x, y) };
@@ -176,28 +179,14 @@ fn draw_turn(icon: Icon, line: &Line<'_>) {
         Icon::Yaw { left } => {
             let turn = |x: f32, y: f32| if left { (14.0 - x, y) } else { (x, y) };
             line(&[(7.0, 1.0), (7.0, 5.0)]);
-            turned(
-                &arc((7.0, 6.5), 5.5, 20.0, 160.0)
-                    .iter()
-                    .rev()
-                    .map(|&(x, y)| (x, 4.5 + y * 0.5))
-                    .collect::<Vec<_>>(),
-                &turn,
-            );
-            turned(&[(9.4, 7.4), (12.6, 7.9), (11.4, 11.2)], &turn);
+            turned(&flat, &turn);
+            turned(&flat_head, &turn);
         }
         Icon::Pitch { forward } => {
             let turn = |x: f32, y: f32| if forward { (y, 14.0 - x) } else { (y, x) };
             line(&[(1.0, 7.0), (4.0, 7.0)]);
-            turned(
-                &arc((7.0, 6.5), 5.5, 20.0, 160.0)
-                    .iter()
-                    .rev()
-                    .map(|&(x, y)| (x, 4.5 + y * 0.5))
-                    .collect::<Vec<_>>(),
-                &turn,
-            );
-            turned(&[(9.4, 7.4), (12.6, 7.9), (11.4, 11.2)], &turn);
+            turned(&flat, &turn);
+            turned(&flat_head, &turn);
         }
         _ => {}
     }

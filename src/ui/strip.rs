@@ -21,33 +21,17 @@ pub struct State {
     followed: Option<PhotoId>,
 }
 
-/// What has been done in a photo: the least of what has been done with its objects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Progress {
-    Untouched,
-    Carried,
-    Posed,
-    Confirmed,
+/// What has been done in a photo, for the strip: one without objects is as untouched as one whose objects are.
+fn progress_of(scene: &Scene, photo: PhotoId) -> AnnotationState {
+    scene.photo_state(photo).unwrap_or(AnnotationState::Untouched)
 }
 
-impl Progress {
-    fn of(scene: &Scene, photo: PhotoId) -> Self {
-        let states = scene.objects_in(photo).map(|(_, annotation)| match annotation.state {
-            AnnotationState::Untouched => Self::Untouched,
-            AnnotationState::Carried => Self::Carried,
-            AnnotationState::Posed => Self::Posed,
-            AnnotationState::Confirmed => Self::Confirmed,
-        });
-        states.min().unwrap_or(Self::Untouched)
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Self::Untouched => "not posed yet",
-            Self::Carried => "carried over, to be checked",
-            Self::Posed => "posed",
-            Self::Confirmed => "confirmed",
-        }
+fn words(progress: AnnotationState) -> &'static str {
+    match progress {
+        AnnotationState::Untouched => "not posed yet",
+        AnnotationState::Carried => "carried over, to be checked",
+        AnnotationState::Posed => "posed",
+        AnnotationState::Confirmed => "confirmed",
     }
 }
 
@@ -75,8 +59,8 @@ pub fn draw(
 /// How many photos are done, in words and as a thin bar.
 fn head(ui: &mut Ui, session: &Session, folded: &mut bool) {
     let scene = session.scene();
-    let progress = scene.photos.iter().map(|photo| Progress::of(scene, photo.id));
-    let confirmed = progress.filter(|progress| *progress == Progress::Confirmed).count();
+    let is_confirmed = |photo: &&Photo| progress_of(scene, photo.id) == AnnotationState::Confirmed;
+    let confirmed = scene.photos.iter().filter(is_confirmed).count();
     let count = scene.photos.len();
     ui.horizontal(|ui| {
         let (icon, label) = if *folded { (Icon::Unfold, "Show photos") } else { (Icon::Fold, "Fold photos") };
@@ -143,10 +127,10 @@ fn draw_cell(
     is_shown: bool,
     thumbnails: &mut Thumbnails,
 ) -> bool {
-    let progress = Progress::of(scene, photo.id);
+    let progress = progress_of(scene, photo.id);
     let response = ui.interact(rect, ui.scope_id().with(("photo", photo.id.0)), Sense::click());
     response.widget_info(|| {
-        let label = format!("Photo {}, {}", photo.name, progress.words());
+        let label = format!("Photo {}, {}", photo.name, words(progress));
         egui::WidgetInfo::selected(egui::Role::Button, true, is_shown, label)
     });
     let visuals = ui.visuals().clone();
@@ -161,7 +145,7 @@ fn draw_cell(
     let foot = Rect::from_min_max(pos2(frame.left(), frame.bottom() + 2.0), rect.max - vec2(4.0, 2.0));
     mark(ui.painter(), pos2(foot.left() + 6.0, foot.center().y), progress, &visuals, is_shown);
     name(ui, foot, &photo.name, text);
-    response.on_hover_text(format!("{}: {}", photo.name, progress.words())).clicked()
+    response.on_hover_text(format!("{}: {}", photo.name, words(progress))).clicked()
 }
 
 /// The thumbnail, as large as it fits; an empty frame until it has come.
@@ -184,18 +168,24 @@ fn name(ui: &mut Ui, foot: Rect, name: &str, color: Color32) {
 }
 
 /// The state by shape first: a ring, a half disc, a disc, a tick; and by colour.
-fn mark(painter: &Painter, center: Pos2, progress: Progress, visuals: &egui::Visuals, is_selected: bool) {
+fn mark(
+    painter: &Painter,
+    center: Pos2,
+    progress: AnnotationState,
+    visuals: &egui::Visuals,
+    is_selected: bool,
+) {
     let on_selection = |color| if is_selected { visuals.selection.stroke.color } else { color };
     let (radius, width) = (4.0, 1.4);
     match progress {
-        Progress::Untouched => {
+        AnnotationState::Untouched => {
             painter.circle_stroke(
                 center,
                 radius,
                 Stroke::new(width, on_selection(visuals.weak_text_color())),
             );
         }
-        Progress::Carried => {
+        AnnotationState::Carried => {
             let color = on_selection(theme::warning(visuals));
             painter.circle_stroke(center, radius, Stroke::new(width, color));
             let half = (0..=12).map(|step| {
@@ -204,10 +194,10 @@ fn mark(painter: &Painter, center: Pos2, progress: Progress, visuals: &egui::Vis
             });
             painter.add(Shape::convex_polygon(half.collect(), color, Stroke::NONE));
         }
-        Progress::Posed => {
+        AnnotationState::Posed => {
             painter.circle_filled(center, radius + 0.5, on_selection(theme::accent(visuals)));
         }
-        Progress::Confirmed => {
+        AnnotationState::Confirmed => {
             let tick = [vec2(-4.0, 0.0), vec2(-1.0, 3.2), vec2(4.5, -3.8)].map(|offset| center + offset);
             painter.line(tick.to_vec(), Stroke::new(2.0, on_selection(theme::good(visuals))));
         }

@@ -110,14 +110,14 @@ fn why_not_copied(session: &Session, photo: &Photo) -> Option<&'static str> {
 
 /// What has been done in a photo: an empty, a half or a full dot, and words.
 fn photo_state(ui: &mut Ui, scene: &Scene, photo: &Photo) {
-    let mut states = scene.objects_in(photo.id).map(|(_, annotation)| annotation.state).peekable();
-    let done = |state: AnnotationState| matches!(state, AnnotationState::Posed | AnnotationState::Confirmed);
-    let (filled, color, meaning) = if states.peek().is_none() {
-        (0.0, ui.visuals().weak_text_color(), "No object in this photo yet")
-    } else if states.all(done) {
-        (5.0, theme::GOOD, "Every object in this photo is posed")
-    } else {
-        (2.2, ui.visuals().warn_fg_color, "An object in this photo waits for its pose")
+    let (filled, color, meaning) = match scene.photo_state(photo.id) {
+        None => (0.0, ui.visuals().weak_text_color(), "No object in this photo yet"),
+        Some(AnnotationState::Posed | AnnotationState::Confirmed) => {
+            (5.0, theme::GOOD, "Every object in this photo is posed")
+        }
+        Some(AnnotationState::Untouched | AnnotationState::Carried) => {
+            (2.2, ui.visuals().warn_fg_color, "An object in this photo waits for its pose")
+        }
     };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(14.0, list::ROW_HEIGHT), Sense::hover());
     ui.painter().circle(rect.center(), 4.5, Color32::TRANSPARENT, egui::Stroke::new(1.3, color));
