@@ -139,6 +139,7 @@ impl Document {
             state: pose.state.into(),
             source: pose.source.into(),
             changed_at_ms: Some(pose.changed_at_ms),
+            score: None,
         })
     }
 
