@@ -396,7 +396,7 @@ mod tests {
     #[test]
     fn errors_come_back_in_words() {
         let error = run(JobKind::Photo, &file("a.png", b"nothing"), &[]).err().unwrap();
-        assert!(error.contains("PNG or JPEG"), "{error}");
+        assert!(error.contains("PNG, JPEG"), "{error}");
         assert!(run_job(&[1, 2, 3]).len() > 1);
     }
 }
