@@ -4,6 +4,7 @@ mod convert;
 mod inspect;
 mod open;
 mod render;
+mod source;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -12,7 +13,7 @@ const USAGE: &str = "\
 PinPose, a 6D object pose annotator
 
 pinpose                              open the window
-pinpose inspect FILE… [--json]       say what files are and what is in them
+pinpose inspect IN… [--json]         say what files, folders and zips are, what is in them, guessed and missing
 pinpose convert IN… OUT              read files or folders, write poses (.json) or a workspace (.zip)
 pinpose render IN… --out FOLDER      draw each photo with its objects
         [--kind overlay|silhouette|mask|visible_mask|depth] [--json]

@@ -49,6 +49,16 @@ impl FileKey {
         }
     }
 
+    /// Does this name the photo at a path? What only a scene can tell (content, position) it does not.
+    pub(super) fn names_photo_at(&self, path: &str) -> bool {
+        match self {
+            Self::Stem(stem) => file_stem(path) == stem,
+            Self::Path(wanted) => is_same_path(wanted, path),
+            Self::BopImage { image, .. } => number_of(file_stem(path)) == Some(*image),
+            Self::Content { .. } | Self::BopObject(_) | Self::Label(_) | Self::Unnamed { .. } => false,
+        }
+    }
+
     /// Is this the mesh that is named? `is_only_one` says that the scene has no other.
     pub(super) fn names_mesh(&self, mesh: &MeshAsset, is_only_one: bool) -> bool {
         let stem = file_stem(&mesh.file_name);
@@ -72,6 +82,11 @@ pub(super) fn base_name(path: &str) -> &str {
 /// The folder that a file is directly in.
 fn folder_name(path: &str) -> Option<&str> {
     path.rsplit(['/', '\\']).nth(1).filter(|name| !name.is_empty())
+}
+
+/// Do two paths agree as far as both go?
+pub(super) fn is_same_path(a: &str, b: &str) -> bool {
+    common_tail(a, b).is_some()
 }
 
 /// How many names at the end of two paths agree, if one of the paths agrees to its beginning.

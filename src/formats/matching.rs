@@ -139,8 +139,10 @@ impl Incoming {
                 None => {
                     let known = scene.objects.iter().find(|object| matches(&object.mesh))?;
                     let (mesh, mesh_from_file) = (known.mesh.clone(), known.mesh_from_file);
+                    let symmetries = known.symmetries.clone();
                     let id = scene.add_object(mesh);
-                    scene.object_mut(id)?.mesh_from_file = mesh_from_file;
+                    let object = scene.object_mut(id)?;
+                    (object.mesh_from_file, object.symmetries) = (mesh_from_file, symmetries);
                     id
                 }
             };

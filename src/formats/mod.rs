@@ -2,9 +2,11 @@
 //!
 //! Knows nothing of the interface: bytes and names in, [`Parsed`] or one [`FormatError`] out.
 
+mod archive;
 mod bop;
 mod camera;
 mod companions;
+pub mod dataset;
 mod document;
 mod error;
 mod file_key;
@@ -26,6 +28,7 @@ use std::sync::Arc;
 
 use crate::scene::{MeshAsset, PhotoAsset, file_stem};
 
+pub use archive::Archive;
 pub use camera::CameraFile;
 pub use companions::{FileWithCompanions, kept, with_companions};
 pub use document::{DOCUMENT_SCHEMA, Document, Keep, ViewSettings, read_document, write_document};
@@ -94,6 +97,19 @@ pub fn read_photo(file: &NamedFile) -> Result<(PhotoAsset, crate::photo::Pixels)
         exif_focal_px: decoded.exif_focal_px,
     };
     Ok((asset, decoded.pixels))
+}
+
+/// A photo's file by its header alone: its pixels are decoded when it is looked at.
+pub fn read_photo_header(file: &NamedFile) -> Result<PhotoAsset, FormatError> {
+    let header = crate::photo::read_header(&file.bytes)?;
+    Ok(PhotoAsset {
+        file_name: file.name.clone(),
+        sha256: crate::scene::Sha256::of(&file.bytes),
+        bytes: file.bytes.clone(),
+        width: header.width,
+        height: header.height,
+        exif_focal_px: header.exif_focal_px,
+    })
 }
 
 /// Parses a mesh's file that came alone; the second value is what was odd about it.

@@ -5,6 +5,7 @@
 mod annotator;
 mod chrome;
 mod cli;
+mod datasets;
 mod demo_scene;
 mod documents;
 mod gestures;
