@@ -7,9 +7,16 @@ use super::{
     vision6d,
 };
 
+/// Poses of a thousand photos with twenty objects each take a third of it. A value takes up to sixteen times its text in
+/// memory.
+const MAX_BYTES: usize = 32 << 20;
+
 /// Reads a camera, poses or a document of ours.
 pub(super) fn parse_json(file: &NamedFile) -> Result<Parsed, FormatError> {
     let (name, bytes) = (file.name.as_str(), &*file.bytes);
+    if bytes.len() > MAX_BYTES {
+        return Err(FormatError::TooMuchText { megabytes: MAX_BYTES >> 20 });
+    }
     let value: Value = serde_json::from_slice(bytes).map_err(FormatError::json)?;
     if value.is_array() {
         return parse_list(name, bytes, &value);
@@ -42,8 +49,7 @@ fn parse_list(name: &str, bytes: &[u8], value: &Value) -> Result<Parsed, FormatE
         return megapose::object_data_incoming(name, bytes).map(Parsed::Poses);
     }
     match pose_array::array_of_json(value) {
-        Some(array) if array.shape == [3, 3] => camera::read_matrix_array(name, &array).map(Parsed::Camera),
-        Some(array) => pose_array::read_pose_array(name, &array).map(Parsed::Poses),
+        Some(array) => super::parse_array(name, &array),
         None => Err(FormatError::at(
             "the list",
             "a 3×3 camera matrix, 4×4 poses or MegaPose's objects with \"label\" expected",

@@ -5,6 +5,7 @@
 mod annotator;
 mod chrome;
 mod cli;
+mod damaged_files;
 mod datasets;
 mod demo_scene;
 mod documents;
