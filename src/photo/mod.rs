@@ -3,11 +3,13 @@
 mod decode;
 mod encode;
 mod mip;
+mod stored;
 mod thumbnail;
 
 pub use decode::{MAX_PIXELS, PhotoError, decode};
 pub use encode::{png_gray8, png_gray16, png_rgba};
 pub use mip::half_size;
+pub use stored::plain_extension;
 pub use thumbnail::thumbnail;
 
 /// A decoded photo: RGBA rows from the top, 8 bits a channel, sRGB, upright (EXIF orientation applied).
