@@ -1,6 +1,7 @@
 //! The command line: one file per verb. Exit code 0 done, 1 bad input (one line on stderr per problem), 2 bad usage.
 
 mod convert;
+mod evaluate;
 mod inspect;
 mod open;
 mod render;
@@ -17,6 +18,9 @@ pinpose convert IN… OUT              read files or folders, write poses (.json
 pinpose render IN… --out FOLDER      draw each photo with its objects
         [--kind overlay|silhouette|mask|visible_mask|depth] [--json]
         one PNG per photo, for masks and silhouettes one per object
+pinpose evaluate --truth T POSES… [--json | --csv]
+        how far poses are from the truth: rotation, translation, ADD, ADI, AD, MSSD, MSPD, projection, VSD, CUS;
+        --truth may come several times; photos and meshes are given with either
 pinpose --help | --version
 ";
 
@@ -55,6 +59,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
         lexopt::Arg::Value(verb) => match verb.to_str() {
             Some("inspect") => inspect::run(parser),
             Some("convert") => convert::run(parser),
+            Some("evaluate") => evaluate::run(parser),
             Some("render") => render::run(parser),
             _ => Err(Failure::Usage(format!("there is no verb \"{}\"", verb.to_string_lossy()))),
         },

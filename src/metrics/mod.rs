@@ -2,12 +2,14 @@
 //!
 //! Knows nothing of files: meshes, cameras and poses in, numbers out.
 
+mod compare;
 mod evaluation;
 mod quick;
 mod summary;
 mod surface;
 mod vertices;
 
+pub use compare::{ComparedPose, Comparison, PoseSet, Recalls, annotated_poses, compare};
 pub use evaluation::{Model, PoseErrors, View};
 pub use quick::{LIVE_VERTICES, PoseError};
 pub use summary::{Metric, Statistics};

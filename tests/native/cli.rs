@@ -1,26 +1,14 @@
 //! The command line as a user runs it.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
 
 use serde_json::Value;
 
-use crate::support::{CAMERA_JSON, box_mesh, data_folder, flat_photo};
-
-fn pinpose(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_pinpose")).args(arguments).output().unwrap()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::remove_dir_all(&folder).ok();
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
+use crate::support::{CAMERA_JSON, box_mesh, data_folder, empty_folder, flat_photo, pinpose};
 
 /// A photo, a mesh, a camera and a pose in a folder.
 fn small_folder(name: &str) -> PathBuf {
-    let folder = folder(name);
+    let folder = empty_folder(name);
     for file in [flat_photo("photo.png", 640, 480), box_mesh("box.obj")] {
         std::fs::write(folder.join(file.name), &file.bytes).unwrap();
     }
@@ -44,7 +32,7 @@ fn inspect_says_what_files_are() {
 
 #[test]
 fn bad_input_is_one_line_per_problem_and_exit_code_1() {
-    let folder = folder("bad");
+    let folder = empty_folder("bad");
     std::fs::write(folder.join("broken.png"), b"\x89PNG\r\n\x1a\n").unwrap();
     std::fs::write(folder.join("empty.ply"), b"").unwrap();
     let paths = ["broken.png", "empty.ply"].map(|name| folder.join(name).display().to_string());
@@ -78,7 +66,7 @@ fn convert_goes_through_a_workspace_without_loss() {
 #[test]
 fn render_draws_masks_and_overlays_of_linemod() {
     let (Some(linemod), Some(_)) = (data_folder("linemod10"), crate::support::renderer()) else { return };
-    let out = folder("render");
+    let out = empty_folder("render");
     let path = |name: &str| linemod.join(name).display().to_string();
     let files = [path("000019.png"), path("obj_000001.ply"), path("groud_truth.txt")];
     for kind in ["overlay", "mask", "depth"] {

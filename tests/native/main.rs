@@ -7,6 +7,7 @@ mod chrome;
 mod cli;
 mod demo_scene;
 mod documents;
+mod evaluate;
 mod gestures;
 mod gpu_and_cpu;
 mod images_corpus;
