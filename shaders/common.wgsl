@@ -20,9 +20,9 @@ struct Frame {
     outline: vec4<f32>,
     // Brightness, factors of contrast and saturation, 1 if any of them changes anything
     adjustment: vec4<f32>,
-    // 1 if there is an overlay, where the wipe is in target pixels, half the width of its line (0: no wipe), 0
+    // 0, where the wipe is in target pixels, half the width of its line (0: no wipe), 0
     shown: vec4<f32>,
-    // 1 if there are masks, 1 for outlines of what is hidden, 0, the mode (Look's order)
+    // 1 if there are masks, 0, 0, 0
     more: vec4<f32>,
     // The nearest depth in mm, 1 / the range of depths, the width of mesh edges in target pixels, 0
     lines: vec4<f32>,

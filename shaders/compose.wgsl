@@ -9,9 +9,10 @@
 @group(1) @binding(5) var mask_texture: texture_2d<f32>;
 @group(1) @binding(6) var hidden_id_texture: texture_2d<f32>;
 @group(1) @binding(7) var backdrop_texture: texture_2d<f32>;
+@group(1) @binding(8) var base_texture: texture_2d<f32>;
 
-// Software renderers run every branch of a shader for every pixel, so the parts of a picture are draws of their own: what
-// lies below over the whole target, overlay and outlines over the window that they are in, and the line of a wipe.
+// Software renderers run every branch of a shader for every pixel, so the parts of a picture are draws of their own:
+// background, photo and masks; surfaces and outlines over the window that they are in; and the line of a wipe.
 
 // The target's corners as positions: (0, 0) is its top left, (1, 1) its bottom right.
 fn target_corner(place: vec2<f32>) -> vec4<f32> {
@@ -28,6 +29,14 @@ fn rectangle_corner(index: u32) -> vec2<f32> {
 @vertex
 fn vs_target(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return target_corner(vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u)));
+}
+
+// What the photo covers.
+@vertex
+fn vs_photo(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    // Pixel (0, 0) has its centre at 0, so the photo begins half a pixel before it.
+    let pixel = rectangle_corner(index) * frame.photo.xy - 0.5;
+    return target_corner((pixel - frame.image_rect.xy) / frame.image_rect.zw);
 }
 
 @vertex
@@ -50,28 +59,10 @@ fn photo_uv(target_position: vec2<f32>) -> vec2<f32> {
     return (pixel + 0.5) / frame.photo.xy;
 }
 
-fn is_inside(uv: vec2<f32>) -> bool {
-    return all(uv >= vec2<f32>(0.0)) && all(uv < vec2<f32>(1.0));
-}
-
-fn bare_photo_color(uv: vec2<f32>) -> vec3<f32> {
-    var color = frame.background.rgb;
-    if (is_inside(uv) && frame.photo.w > 0.0) {
-        let photo = adjusted(textureSampleLevel(photo_texture, photo_sampler, uv, frame.photo.z).rgb);
-        color = mix(color, photo, frame.photo.w);
-    }
-    return color;
-}
-
-// The photo with its masks.
 fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
     let uv = photo_uv(target_position);
-    var color = bare_photo_color(uv);
-    if (is_inside(uv) && frame.more.x > 0.5) {
-        let mask = textureSampleLevel(mask_texture, photo_sampler, uv, frame.photo.z);
-        color = mix(color, mask.rgb, mask.a);
-    }
-    return color;
+    let photo = adjusted(textureSampleLevel(photo_texture, photo_sampler, uv, frame.photo.z).rgb);
+    return mix(frame.background.rgb, photo, frame.photo.w);
 }
 
 // What is around objects in a free view: lighter towards a soft horizon, with the photo's plane and lines before it.
@@ -90,10 +81,13 @@ fn backdrop_color(target_position: vec2<f32>, texel: vec2<i32>) -> vec3<f32> {
 fn outline_at(ids: texture_2d<f32>, texel: vec2<i32>, half_widths: vec2<f32>) -> vec4<f32> {
     let last = vec2<i32>(textureDimensions(ids)) - 1;
     let here = textureLoad(ids, texel, 0);
-    let reach = i32(ceil(half_widths.y));
+    // From here on nothing is covered; a disc has half the pixels of the square around it.
+    let radius = half_widths.y + 1.0;
+    let reach = i32(radius);
     var best = vec4<f32>(0.0);
     for (var y = -reach; y <= reach; y++) {
-        for (var x = -reach; x <= reach; x++) {
+        let row_reach = i32(sqrt(radius * radius - f32(y * y)));
+        for (var x = -row_reach; x <= row_reach; x++) {
             let there = textureLoad(ids, clamp(texel + vec2<i32>(x, y), vec2<i32>(0), last), 0);
             if (abs(there.a - here.a) > 0.001) {
                 // The selected object's line goes over the others', an object's over the background's.
@@ -111,43 +105,32 @@ fn outline_at(ids: texture_2d<f32>, texel: vec2<i32>, half_widths: vec2<f32>) ->
     return best;
 }
 
-// A colour over a premultiplied one.
-fn over(below: vec4<f32>, color: vec3<f32>, alpha: f32) -> vec4<f32> {
-    return vec4<f32>(color * alpha, alpha) + below * (1.0 - alpha);
-}
-
-fn with_outlines(below: vec4<f32>, target_position: vec2<f32>, texel: vec2<i32>) -> vec4<f32> {
-    var color = below;
-    if (frame.more.y > 0.5) {
-        let line = outline_at(hidden_id_texture, texel, frame.outline.xx);
-        color = over(color, line.rgb, line.a * 0.75);
-    }
-    if (frame.outline.x > 0.0) {
-        let line = outline_at(id_texture, texel, frame.outline.xy);
-        color = over(color, line.rgb, line.a);
-    }
-    if (frame.outline.z > 0.0) {
-        // References are dashed: told apart by more than colour.
-        let dash = fract((target_position.x + target_position.y) / (2.0 * frame.outline.w));
-        let ghost = outline_at(ghost_texture, texel, frame.outline.zz);
-        color = over(color, ghost.rgb, ghost.a * select(0.0, 1.0, dash < 0.6));
-    }
-    return color;
-}
-
 fn window_texel(target_position: vec2<f32>) -> vec2<i32> {
     return vec2<i32>(clamp(floor(target_position) - frame.window.xy, vec2<f32>(0.0), frame.window.zw - 1.0));
 }
 
-// Where no masks are shown: they would be read for nothing.
+@fragment
+fn fs_background() -> @location(0) vec4<f32> {
+    return vec4<f32>(frame.background.rgb, 1.0);
+}
+
+// Nearly always the photo is shown as it is.
 @fragment
 fn fs_photo(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    return vec4<f32>(bare_photo_color(photo_uv(position.xy - frame.target_rect.xy)), 1.0);
+    let uv = photo_uv(position.xy - frame.target_rect.xy);
+    return vec4<f32>(textureSample(photo_texture, photo_sampler, uv).rgb, 1.0);
 }
 
 @fragment
-fn fs_masked_photo(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn fs_changed_photo(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return vec4<f32>(photo_color(position.xy - frame.target_rect.xy), 1.0);
+}
+
+@fragment
+fn fs_masks(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let uv = photo_uv(position.xy - frame.target_rect.xy);
+    let mask = textureSampleLevel(mask_texture, photo_sampler, uv, frame.photo.z);
+    return vec4<f32>(mask.rgb * mask.a, mask.a);
 }
 
 @fragment
@@ -156,24 +139,26 @@ fn fs_backdrop(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32>
     return vec4<f32>(backdrop_color(target_position, window_texel(target_position)), 1.0);
 }
 
+// Photo and masks as they were drawn before, at the same place.
+@fragment
+fn fs_base(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return textureLoad(base_texture, vec2<i32>(floor(position.xy)), 0);
+}
+
 // A pixel is on one side of a wipe or the other by its centre.
 fn is_wiped(target_position: vec2<f32>) -> bool {
     return frame.shown.z > 0.0 && target_position.x >= frame.shown.y;
 }
 
-// Overlay and outlines, premultiplied, to be blended over what lies below.
+// All that follow are premultiplied, to be blended over what lies below.
+
 @fragment
 fn fs_overlay(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let target_position = position.xy - frame.target_rect.xy;
     if (is_wiped(target_position)) {
         discard;
     }
-    let texel = window_texel(target_position);
-    var color = vec4<f32>(0.0);
-    if (frame.shown.x > 0.5) {
-        color = textureLoad(overlay_texture, texel, 0) * frame.background.a;
-    }
-    return with_outlines(color, target_position, texel);
+    return textureLoad(overlay_texture, window_texel(target_position), 0) * frame.background.a;
 }
 
 // How overlay and photo differ, in place of the overlay.
@@ -183,13 +168,49 @@ fn fs_difference(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     if (is_wiped(target_position)) {
         discard;
     }
-    let texel = window_texel(target_position);
-    let overlay = textureLoad(overlay_texture, texel, 0);
+    let overlay = textureLoad(overlay_texture, window_texel(target_position), 0);
     // Drawn opaque for this, so alpha is how much of the pixel the meshes cover.
     let own = overlay.rgb / max(overlay.a, 1e-3);
-    let alpha = overlay.a * frame.background.a * frame.shown.x;
-    let difference = abs(photo_color(target_position) - own);
-    return with_outlines(vec4<f32>(difference * alpha, alpha), target_position, texel);
+    let alpha = overlay.a * frame.background.a;
+    var photo = frame.background.rgb;
+    let uv = photo_uv(target_position);
+    if (all(uv >= vec2<f32>(0.0)) && all(uv < vec2<f32>(1.0))) {
+        photo = photo_color(target_position);
+    }
+    return vec4<f32>(abs(photo - own) * alpha, alpha);
+}
+
+@fragment
+fn fs_outlines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let target_position = position.xy - frame.target_rect.xy;
+    if (is_wiped(target_position)) {
+        discard;
+    }
+    let line = outline_at(id_texture, window_texel(target_position), frame.outline.xy);
+    return vec4<f32>(line.rgb * line.a, line.a);
+}
+
+// Of what others hide.
+@fragment
+fn fs_hidden_outlines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let target_position = position.xy - frame.target_rect.xy;
+    if (is_wiped(target_position)) {
+        discard;
+    }
+    let line = outline_at(hidden_id_texture, window_texel(target_position), frame.outline.xx);
+    return vec4<f32>(line.rgb * line.a, line.a) * 0.75;
+}
+
+// References are dashed: told apart by more than colour.
+@fragment
+fn fs_ghost_outlines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let target_position = position.xy - frame.target_rect.xy;
+    let dash = fract((target_position.x + target_position.y) / (2.0 * frame.outline.w));
+    if (is_wiped(target_position) || dash >= 0.6) {
+        discard;
+    }
+    let line = outline_at(ghost_texture, window_texel(target_position), frame.outline.zz);
+    return vec4<f32>(line.rgb * line.a, line.a);
 }
 
 // White with a dark rim: seen on every photo.
@@ -198,5 +219,5 @@ fn fs_wipe(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let distance = abs(position.x - frame.target_rect.x - frame.shown.y);
     let rim = 0.45 * clamp(2.0 * frame.shown.z + 0.5 - distance, 0.0, 1.0);
     let line = clamp(frame.shown.z + 0.5 - distance, 0.0, 1.0);
-    return over(vec4<f32>(0.0, 0.0, 0.0, rim), vec3<f32>(1.0), line);
+    return vec4<f32>(vec3<f32>(line), line + rim * (1.0 - line));
 }

@@ -3,9 +3,6 @@
 @group(2) @binding(0) var surface_texture: texture_2d<f32>;
 @group(2) @binding(1) var surface_sampler: sampler;
 
-const NORMALS: f32 = 3.0;
-const DEPTH: f32 = 4.0;
-
 struct Vertex {
     @location(0) position_object: vec3<f32>,
     @location(1) normal_object: vec4<f32>,
@@ -107,15 +104,18 @@ fn depth_color(depth_mm: f32) -> vec3<f32> {
 // All that follow write premultiplied colour, so that multisampling blends edges correctly.
 @fragment
 fn fs_lit(in: Lit) -> @location(0) vec4<f32> {
-    var color: vec3<f32>;
-    if (frame.more.w == NORMALS) {
-        color = facing_normal(in.normal_eye, normalize(-in.position_eye)) * 0.5 + 0.5;
-    } else if (frame.more.w == DEPTH) {
-        color = depth_color(in.position_eye.z);
-    } else {
-        color = lit_color(in.position_eye, in.normal_eye);
-    }
+    return vec4<f32>(lit_color(in.position_eye, in.normal_eye) * object.color.a, object.color.a);
+}
+
+@fragment
+fn fs_normals(in: Lit) -> @location(0) vec4<f32> {
+    let color = facing_normal(in.normal_eye, normalize(-in.position_eye)) * 0.5 + 0.5;
     return vec4<f32>(color * object.color.a, object.color.a);
+}
+
+@fragment
+fn fs_depth(in: Lit) -> @location(0) vec4<f32> {
+    return vec4<f32>(depth_color(in.position_eye.z) * object.color.a, object.color.a);
 }
 
 @fragment

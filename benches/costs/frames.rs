@@ -32,10 +32,16 @@ pub fn frames() {
     }
     for (side, limit_ms) in LIMIT_MS {
         let mesh = asset(potato(side));
-        for mode in [OverlayMode::Shaded, OverlayMode::Outline, OverlayMode::Edges, OverlayMode::Wireframe] {
-            let picture = picture(&mesh, mode);
+        let modes = [OverlayMode::Shaded, OverlayMode::Outline, OverlayMode::Edges, OverlayMode::Wireframe];
+        // Surfaces alone are what other viewers draw; ours have an outline besides.
+        for (mode, outline) in
+            [(OverlayMode::Shaded, false)].into_iter().chain(modes.map(|mode| (mode, true)))
+        {
+            let mut picture = picture(&mesh, mode);
+            picture.look.outline = outline;
             let Step { frame_ms, own_ms, processor_ms } = drag_step(&mut renderer, picture);
-            let what = format!("drag step, {} triangles, {}", 2 * side * side, mode.name());
+            let alone = if outline { "" } else { " alone" };
+            let what = format!("drag step, {} triangles, {}{alone}", 2 * side * side, mode.name());
             row(&what, frame_ms, limit_ms, &format!("{limit_ms} ms"));
             row("  the program's own share", own_ms, frame_ms, "the whole step");
             if let Some(processor_ms) = processor_ms {
@@ -161,6 +167,7 @@ fn picture(mesh: &Arc<MeshAsset>, mode: OverlayMode) -> Picture {
         photo: Some(PhotoLayer(Arc::new(pixels))),
         photo_opacity: 1.0,
         masks: None,
+        occluder: None,
         items: vec![item],
         ghosts: Vec::new(),
         look: Look { mode, ..Look::default() },

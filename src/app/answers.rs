@@ -86,7 +86,7 @@ impl PinPose {
             }
         };
         let files = files.into_iter().map(Ok).collect();
-        self.loading.arrive(Arrival { files, poses_as, as_masks: false, reply: Some(reply) });
+        self.loading.arrive(Arrival { poses_as, reply: Some(reply), ..Arrival::of_files(files) });
     }
 
     fn call_set_pose(&mut self, photo: u32, object: u32, rows: &[[f64; 4]; 4]) -> Answer {

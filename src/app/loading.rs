@@ -13,7 +13,7 @@ use crate::formats::{
     Document, FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
     with_companions,
 };
-use crate::photo::Pixels;
+use crate::photo::{DepthPixels, Pixels, is_depth_like};
 use crate::platform::{self, FileBytes, PageReply, Saved, SavedAsset};
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
 use crate::session::{Batch, Pick};
@@ -40,20 +40,33 @@ pub struct Loading {
     pub thumbnails: ThumbnailJobs,
     /// `None`: it could not be made.
     finished_thumbnails: Vec<(Sha256, Option<Pixels>)>,
+    /// Depth maps of the scene that are decoded to be shown.
+    depth_jobs: HashMap<u64, Sha256>,
+    finished_depths: Vec<(Sha256, Option<Arc<DepthPixels>>)>,
+}
+
+/// What images are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImagesAs {
+    /// Photos, unless something speaks for masks or a depth map.
+    Photos,
+    /// Masks of the photo that is shown.
+    Masks,
+    /// The depth map of the photo that is shown.
+    DepthMap,
 }
 
 /// Files that came together.
 pub struct Arrival {
     pub files: Vec<Result<FileBytes, String>>,
     pub poses_as: Option<PosesAs>,
-    /// All images are masks of the photo that is shown.
-    pub as_masks: bool,
+    pub images_as: ImagesAs,
     pub reply: Option<PageReply>,
 }
 
 impl Arrival {
     fn of_files(files: Vec<Result<FileBytes, String>>) -> Self {
-        Self { files, poses_as: None, as_masks: false, reply: None }
+        Self { files, poses_as: None, images_as: ImagesAs::Photos, reply: None }
     }
 }
 
@@ -63,9 +76,11 @@ struct Load {
     jobs_left: usize,
     job_count: usize,
     batch: Batch,
-    as_masks: bool,
+    images_as: ImagesAs,
     /// Images that are masks if a photo of their size is shown.
     likely_masks: Vec<Arc<PhotoAsset>>,
+    /// The same of depth maps.
+    likely_depths: Vec<Arc<PhotoAsset>>,
     opening: Option<(Document, Origin)>,
     problems: Vec<String>,
     warnings: Vec<String>,
@@ -95,6 +110,8 @@ impl Loading {
             busy_since_ms: None,
             thumbnails: ThumbnailJobs::default(),
             finished_thumbnails: Vec::new(),
+            depth_jobs: HashMap::new(),
+            finished_depths: Vec::new(),
         }
     }
 
@@ -152,9 +169,13 @@ impl Loading {
 
     pub fn pick_files(&self, pick: Pick) {
         let deliver = self.deliverer();
-        let as_masks = pick == Pick::Masks;
+        let images_as = match pick {
+            Pick::Masks => ImagesAs::Masks,
+            Pick::DepthMap => ImagesAs::DepthMap,
+            _ => ImagesAs::Photos,
+        };
         platform::pick_files(accepted(pick), move |files| {
-            deliver(Arrival { as_masks, ..Arrival::of_files(files) });
+            deliver(Arrival { images_as, ..Arrival::of_files(files) });
         });
     }
 
@@ -203,6 +224,12 @@ impl Loading {
         self.thumbnails.insert(job, photo.sha256);
     }
 
+    /// Decodes a depth map of the scene that is to be shown.
+    pub fn decode_depth(&mut self, depth: &PhotoAsset) {
+        let job = self.jobs.submit(JobKind::DepthMap, file_of(depth), &[], Urgency::Next);
+        self.depth_jobs.insert(job, depth.sha256);
+    }
+
     pub fn is_worker_idle(&self) -> bool {
         self.jobs.is_idle()
     }
@@ -211,10 +238,14 @@ impl Loading {
         std::mem::take(&mut self.finished_thumbnails)
     }
 
+    pub fn take_depth_maps(&mut self) -> Vec<(Sha256, Option<Arc<DepthPixels>>)> {
+        std::mem::take(&mut self.finished_depths)
+    }
+
     fn start(&mut self, arrival: Arrival) {
         let batch = Batch { poses_as: arrival.poses_as, ..Batch::default() };
         let mut load = self.new_load(batch, arrival.reply);
-        load.as_masks = arrival.as_masks;
+        load.images_as = arrival.images_as;
         let mut files = Vec::new();
         for file in arrival.files {
             match file {
@@ -251,8 +282,9 @@ impl Loading {
             jobs_left: 0,
             job_count: 0,
             batch,
-            as_masks: false,
+            images_as: ImagesAs::Photos,
             likely_masks: Vec::new(),
+            likely_depths: Vec::new(),
             opening: None,
             problems: Vec::new(),
             warnings: Vec::new(),
@@ -276,6 +308,7 @@ impl Loading {
         }
         let kind = classify(&file.name, &file.bytes);
         let job = match kind {
+            FileKind::Photo if load.takes_as_depth(&file) => Some(JobKind::DepthMap),
             FileKind::Photo => Some(JobKind::Photo),
             FileKind::Mesh => Some(JobKind::Mesh),
             _ => None,
@@ -321,8 +354,17 @@ impl Loading {
                 self.finished_thumbnails.push((sha256, made));
                 continue;
             }
-            if let Ok(Done::Photo(asset, pixels)) = &done {
-                decoded.push((asset.sha256, pixels.clone()));
+            if let Some(sha256) = self.depth_jobs.remove(&job) {
+                let read = if let Ok(Done::DepthMap(_, depth)) = done { Some(depth) } else { None };
+                self.finished_depths.push((sha256, read));
+                continue;
+            }
+            match &done {
+                Ok(Done::Photo(asset, pixels)) => decoded.push((asset.sha256, pixels.clone())),
+                Ok(Done::DepthMap(asset, depth)) => {
+                    self.finished_depths.push((asset.sha256, Some(depth.clone())));
+                }
+                _ => {}
             }
             let load = self.load_of_job.remove(&job);
             if let Some(load) = self.loads.iter_mut().find(|candidate| Some(candidate.id) == load) {
@@ -341,7 +383,7 @@ impl Loading {
 fn accepted(pick: Pick) -> &'static [&'static str] {
     match pick {
         Pick::Anything => &[],
-        Pick::Photos | Pick::Masks => &["png", "jpg", "jpeg"],
+        Pick::Photos | Pick::Masks | Pick::DepthMap => &["png", "jpg", "jpeg"],
         Pick::Meshes => &["ply", "obj", "stl", "glb", "gltf", "off"],
         Pick::Cameras => &["json", "txt"],
         Pick::Poses => &["json", "txt", "csv"],
@@ -362,16 +404,27 @@ impl Load {
         self.opening.as_ref().is_some_and(|(_, candidate)| *candidate == origin)
     }
 
+    fn takes_as_depth(&self, file: &NamedFile) -> bool {
+        match self.images_as {
+            ImagesAs::Photos => is_depth_like(&file.bytes),
+            ImagesAs::Masks => false,
+            ImagesAs::DepthMap => true,
+        }
+    }
+
     fn take_done(&mut self, file: &NamedFile, done: Result<Done, String>) {
         match done {
             Ok(Done::Photo(asset, pixels)) => {
                 let is_named_mask = asset.file_name.to_lowercase().contains("mask");
-                if self.as_masks || (is_named_mask && self.opening.is_none() && is_grey(&pixels)) {
+                if self.images_as == ImagesAs::Masks || (is_named_mask && self.opening.is_none() && is_grey(&pixels)) {
                     self.likely_masks.push(asset);
                 } else {
                     self.batch.photos.push(asset);
                 }
             }
+            // A saved scene says itself what is whose depth map.
+            Ok(Done::DepthMap(asset, _)) if self.opening.is_some() => self.batch.photos.push(asset),
+            Ok(Done::DepthMap(asset, _)) => self.likely_depths.push(asset),
             // Thumbnails are of no load.
             Ok(Done::Thumbnail(_)) => return,
             Ok(Done::Mesh(asset, warnings)) => {

@@ -10,6 +10,7 @@ mod events;
 mod input;
 mod jobs;
 mod loading;
+mod depth_maps;
 mod mask_layer;
 mod performance;
 mod photo_cache;
@@ -45,6 +46,7 @@ pub struct PinPose {
     answers: answers::Answers,
     pictures: pictures::Pictures,
     mask_layer: mask_layer::MaskLayer,
+    depth_maps: depth_maps::DepthMaps,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
@@ -89,6 +91,7 @@ impl PinPose {
             answers: answers::Answers::default(),
             pictures: pictures::Pictures::default(),
             mask_layer: mask_layer::MaskLayer::default(),
+            depth_maps: depth_maps::DepthMaps::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
@@ -139,6 +142,7 @@ impl eframe::App for PinPose {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
+        let depth = self.session.photo().map(|photo| photo.id).and_then(|photo| self.depth_of(photo));
         let open_scene = self.autosave.id();
         let opening = || ui::Busy { text: "Opening…".to_owned(), can_cancel: false };
         let busy = self.loading.busy(platform::now_ms()).or_else(|| self.scenes.is_opening().then(opening));
@@ -147,6 +151,7 @@ impl eframe::App for PinPose {
             renderer: self.renderer.as_ref(),
             pixels,
             masks: self.mask_layer.pixels(),
+            depth,
             saving: self.autosave.state(&self.session),
             busy,
             scenes: self.scenes.list(),

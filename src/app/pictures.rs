@@ -52,7 +52,9 @@ impl PinPose {
         for asked in std::mem::take(&mut self.pictures.asked) {
             match asked.kind {
                 ExportKind::Mask | ExportKind::VisibleMask | ExportKind::Depth => self.rasterize(asked),
-                ExportKind::Overlay if !self.is_decoded(asked.photo) => self.pictures.asked.push(asked),
+                ExportKind::Overlay if !self.is_decoded(asked.photo) || self.waits_for_depth(asked.photo) => {
+                    self.pictures.asked.push(asked);
+                }
                 ExportKind::Overlay | ExportKind::Silhouette => self.draw_picture(asked, ctx),
             }
         }
@@ -80,10 +82,11 @@ impl PinPose {
     }
 
     fn draw_picture(&mut self, asked: Asked, ctx: &egui::Context) {
+        let depth = self.depth_of(asked.photo);
         let scene = self.session.scene();
         let pixels = scene.photo(asked.photo).and_then(|photo| self.photos.get(photo.asset.sha256));
         let object = asked.object.filter(|_| asked.kind.is_of_one_object());
-        let picture = export_picture(scene, asked.photo, pixels, object);
+        let picture = export_picture(scene, asked.photo, pixels, depth, object);
         let (Some(picture), Some(renderer)) = (picture, &self.renderer) else {
             self.hand_over(asked.target, Err("the picture cannot be drawn".to_owned()));
             return;

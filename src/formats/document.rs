@@ -63,6 +63,8 @@ struct PhotoEntry {
     opacity: f32,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     locked: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    depth: Option<DepthEntry>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     masks: Vec<MaskEntry>,
     poses: Vec<PoseEntry>,
@@ -78,6 +80,15 @@ struct MaskEntry {
     color: String,
     opacity: f32,
     visible: bool,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DepthEntry {
+    file: String,
+    sha256: String,
+    mm_per_unit: f64,
+    occludes: bool,
 }
 
 fn yes() -> bool {
@@ -160,6 +171,31 @@ struct ObjectEntry {
     /// Objects of one group move together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     link: Option<u32>,
+    #[serde(default, skip_serializing_if = "SymmetriesEntry::is_empty")]
+    symmetries: SymmetriesEntry,
+}
+
+/// Transforms of the object onto itself, in its own frame.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SymmetriesEntry {
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    discrete: Vec<[[f64; 4]; 4]>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    continuous: Vec<ContinuousSymmetryEntry>,
+}
+
+impl SymmetriesEntry {
+    fn is_empty(&self) -> bool {
+        self.discrete.is_empty() && self.continuous.is_empty()
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ContinuousSymmetryEntry {
+    axis: [f64; 3],
+    offset_mm: [f64; 3],
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -9,7 +9,7 @@ use crate::photo::PhotoError;
 #[derive(Debug, Error)]
 pub enum FormatError {
     #[error(
-        "not a file this version reads: a photo (PNG, JPEG), a mesh (PLY, OBJ, STL, glTF, OFF), a camera (JSON), poses (PinPose JSON, \
+        "not a file this version reads: a photo (PNG, JPEG, WebP, BMP, TIFF), a mesh (PLY, OBJ, STL, glTF, OFF), a camera (JSON), poses (PinPose JSON, \
          Vision6D ground truth) or a PinPose workspace (zip) expected"
     )]
     Unknown,

@@ -4,7 +4,7 @@ use glam::DMat4;
 
 use super::{CameraFile, Document, FileKey, FormatError};
 use crate::math::{Intrinsics, Pose};
-use crate::scene::{AnnotationState, CameraOrigin, PoseSource, Rgb};
+use crate::scene::{AnnotationState, CameraOrigin, PoseSource, Rgb, Symmetries};
 
 /// What an import's poses are to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +50,8 @@ pub struct IncomingObject {
     pub key: FileKey,
     /// `None`: as the scene has it.
     pub mesh_from_file: Option<DMat4>,
+    /// In the `object` frame; `None`: as the scene has it.
+    pub symmetries: Option<Symmetries>,
     pub look: Option<ObjectLook>,
 }
 
@@ -95,7 +97,7 @@ pub struct IncomingReference {
 
 impl IncomingObject {
     pub fn named(key: FileKey) -> Self {
-        Self { key, mesh_from_file: None, look: None }
+        Self { key, mesh_from_file: None, symmetries: None, look: None }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What a file is, from its first bytes and, where they leave it open, its name.
 
+use crate::photo::is_picture;
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileKind {
     Photo,
@@ -15,7 +17,8 @@ pub enum FileKind {
 pub fn classify(name: &str, bytes: &[u8]) -> FileKind {
     let extension =
         name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase()).unwrap_or_default();
-    if bytes.starts_with(b"\x89PNG") || bytes.starts_with(&[0xff, 0xd8, 0xff]) {
+    // One that is known by name only is refused as a photo, in words that help.
+    if is_picture(bytes) {
         return FileKind::Photo;
     }
     if bytes.starts_with(b"ply") || bytes.starts_with(b"glTF") {
@@ -25,7 +28,7 @@ pub fn classify(name: &str, bytes: &[u8]) -> FileKind {
         return FileKind::Workspace;
     }
     match extension.as_str() {
-        "png" | "jpg" | "jpeg" => FileKind::Photo,
+        "png" | "jpg" | "jpeg" | "webp" | "bmp" | "tif" | "tiff" => FileKind::Photo,
         "ply" | "obj" | "stl" | "glb" | "gltf" | "off" => FileKind::Mesh,
         "zip" => FileKind::Workspace,
         _ => classify_text(&extension, bytes),
@@ -53,6 +56,7 @@ mod tests {
         assert_eq!(classify("photo.txt", b"\x89PNG...."), FileKind::Photo);
         assert_eq!(classify("scene.png", b"ply\nformat"), FileKind::Mesh);
         assert_eq!(classify("a.png", b"not a png"), FileKind::Photo);
+        assert_eq!(classify("a.heic", b"\0\0\0\x1cftypheic"), FileKind::Photo);
         assert_eq!(classify("truth.txt", b"{\"fx\": 1}\nobj <-> image\n"), FileKind::Vision6dTruth);
         assert_eq!(classify("camera.txt", b" {\"fx\": 1}"), FileKind::Json);
         assert_eq!(classify("notes.txt", b"hello"), FileKind::Unknown);

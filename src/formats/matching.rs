@@ -86,7 +86,7 @@ impl Incoming {
         let mut rest = self.clone();
         rest.remarks.clear();
         for (object, _) in rest.objects.iter_mut().zip(objects).filter(|(_, id)| id.is_some()) {
-            (object.look, object.mesh_from_file) = (None, None);
+            (object.look, object.mesh_from_file, object.symmetries) = (None, None, None);
         }
         for (photo, _) in rest.photos.iter_mut().zip(photos).filter(|(_, id)| id.is_some()) {
             (photo.camera, photo.look) = (None, None);
@@ -230,6 +230,9 @@ fn restore_look(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> O
         object.visible = look.visible;
         object.locked = look.locked;
         object.link = look.link;
+    }
+    if let Some(symmetries) = &incoming.symmetries {
+        object.symmetries.clone_from(symmetries);
     }
     let wanted = incoming.mesh_from_file.filter(|wanted| *wanted != object.mesh_from_file)?;
     match object.mesh.with_mesh_from_file(object.mesh_from_file, wanted) {

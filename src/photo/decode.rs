@@ -1,12 +1,13 @@
-//! PNG and JPEG to pixels, within bounds.
+//! PNG, JPEG, WebP, BMP and TIFF to pixels, within bounds.
 
 use std::io::Cursor;
 
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageError, ImageReader, Limits};
 use thiserror::Error;
 
-use super::{DecodedPhoto, Pixels};
+use super::kind::{PictureKind, picture_kind};
+use super::{DecodedPhoto, PhotoHeader, Pixels};
 
 /// Larger photos are refused: a decoded one would fill the memory of a tab.
 pub const MAX_PIXELS: u64 = 50_000_000;
@@ -16,46 +17,107 @@ const FULL_FRAME_WIDTH_MM: f64 = 36.0;
 
 #[derive(Debug, Error)]
 pub enum PhotoError {
-    #[error("not a photo this version reads: PNG or JPEG expected")]
+    #[error("not a photo this version reads: PNG, JPEG, WebP, BMP or TIFF expected")]
     UnknownFormat,
+    #[error("a {format} picture, which is not read: save it as PNG, JPEG, WebP, BMP or TIFF")]
+    Foreign { format: &'static str },
     #[error("the {format} data is damaged or cut short: {reason}")]
     Damaged { format: &'static str, reason: String },
+    #[error("this kind of {format} is not read: {reason}")]
+    Unsupported { format: &'static str, reason: String },
     #[error("the photo has {width}×{height} pixels, more than {} million", MAX_PIXELS / 1_000_000)]
     TooLarge { width: u32, height: u32 },
+    #[error("a depth map is a grey PNG or TIFF of 8 or 16 bits, this is a {format} of {found}")]
+    NotDepth { format: &'static str, found: String },
 }
 
-/// Decodes a PNG or JPEG file. The format is read from the content, never from the name.
+/// Decodes a photo's file. The format is read from the content, never from the name. Sixteen bits a channel become eight,
+/// evenly: 65535 is white.
 pub fn decode(bytes: &[u8]) -> Result<DecodedPhoto, PhotoError> {
-    let (format, format_name) = match image::guess_format(bytes) {
-        Ok(ImageFormat::Png) => (ImageFormat::Png, "PNG"),
-        Ok(ImageFormat::Jpeg) => (ImageFormat::Jpeg, "JPEG"),
-        _ => return Err(PhotoError::UnknownFormat),
-    };
-    let damaged =
-        |error: image::ImageError| PhotoError::Damaged { format: format_name, reason: error.to_string() };
-
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    let mut limits = Limits::default();
-    // 16-bit RGBA at the limit of pixels, the worst that is decoded.
-    limits.max_alloc = Some(MAX_PIXELS * 8);
-    reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(damaged)?;
-    let (width, height) = decoder.dimensions();
-    if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(PhotoError::TooLarge { width, height });
-    }
-    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-    let exif = decoder.exif_metadata().ok().flatten();
-
-    let mut picture = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-    picture.apply_orientation(orientation);
-    let picture = picture.into_rgba8();
-    let pixels = Pixels { width: picture.width(), height: picture.height(), rgba: picture.into_raw() };
-    // The equivalent focal length is defined along the sensor's long side, however the camera was held.
-    let long_side_px = f64::from(pixels.width.max(pixels.height));
-    let exif_focal_px =
-        exif.and_then(focal_35mm).map(|focal_mm| focal_mm / FULL_FRAME_WIDTH_MM * long_side_px);
+    let picture = Picture::open(bytes)?;
+    let exif_focal_px = picture.exif_focal_px();
+    let pixels = picture.decode()?.into_rgba8();
+    let pixels = Pixels { width: pixels.width(), height: pixels.height(), rgba: pixels.into_raw() };
     Ok(DecodedPhoto { pixels, exif_focal_px })
+}
+
+/// Reads what a photo's file says of itself, without its pixels: a thousand photos take a moment.
+pub fn read_header(bytes: &[u8]) -> Result<PhotoHeader, PhotoError> {
+    let picture = Picture::open(bytes)?;
+    let (width, height) = picture.upright_size();
+    Ok(PhotoHeader { width, height, exif_focal_px: picture.exif_focal_px() })
+}
+
+/// A picture's file whose header was read.
+pub(super) struct Picture<D> {
+    decoder: D,
+    pub(super) format: &'static str,
+    orientation: Orientation,
+    exif_focal_35mm: Option<f64>,
+}
+
+impl<'a> Picture<Box<dyn ImageDecoder + 'a>> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, PhotoError> {
+        let (format, format_name) = match picture_kind(bytes) {
+            Some(PictureKind::Read(format, name)) => (format, name),
+            Some(PictureKind::Foreign(format)) => return Err(PhotoError::Foreign { format }),
+            None => return Err(PhotoError::UnknownFormat),
+        };
+        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+        let mut limits = Limits::default();
+        // 16-bit RGBA at the limit of pixels, the worst that is decoded.
+        limits.max_alloc = Some(MAX_PIXELS * 8);
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(|error| refused(format_name, error))?;
+        let mut decoder: Box<dyn ImageDecoder + 'a> = Box::new(decoder);
+        let (width, height) = decoder.dimensions();
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(PhotoError::TooLarge { width, height });
+        }
+        let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+        let exif_focal_35mm = decoder.exif_metadata().ok().flatten().and_then(focal_35mm);
+        Ok(Self { decoder, format: format_name, orientation, exif_focal_35mm })
+    }
+
+    /// Width and height, once the picture stands upright.
+    fn upright_size(&self) -> (u32, u32) {
+        let (width, height) = self.decoder.dimensions();
+        match self.orientation {
+            Orientation::Rotate90
+            | Orientation::Rotate270
+            | Orientation::Rotate90FlipH
+            | Orientation::Rotate270FlipH => (height, width),
+            _ => (width, height),
+        }
+    }
+
+    /// The equivalent focal length is defined along the sensor's long side, however the camera was held.
+    fn exif_focal_px(&self) -> Option<f64> {
+        let (width, height) = self.decoder.dimensions();
+        let long_side_px = f64::from(width.max(height));
+        self.exif_focal_35mm.map(|focal_mm| focal_mm / FULL_FRAME_WIDTH_MM * long_side_px)
+    }
+
+    /// What the file holds, before it is expanded to whole bytes.
+    pub(super) fn color(&self) -> ExtendedColorType {
+        self.decoder.original_color_type()
+    }
+
+    /// Reads the pixels and turns them upright.
+    pub(super) fn decode(self) -> Result<DynamicImage, PhotoError> {
+        let decoded = DynamicImage::from_decoder(self.decoder);
+        let mut picture = decoded.map_err(|error| refused(self.format, error))?;
+        picture.apply_orientation(self.orientation);
+        Ok(picture)
+    }
+}
+
+fn refused(format: &'static str, error: ImageError) -> PhotoError {
+    let reason = error.to_string();
+    match error {
+        ImageError::Unsupported(_) => PhotoError::Unsupported { format, reason },
+        _ => PhotoError::Damaged { format, reason },
+    }
 }
 
 /// EXIF's `FocalLengthIn35mmFilm`, where it is there and not zero ("unknown").
@@ -66,33 +128,4 @@ fn focal_35mm(exif: Vec<u8>) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn png(width: u32, height: u32) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        let picture = image::RgbImage::from_fn(width, height, |x, y| image::Rgb([x as u8, y as u8, 7]));
-        picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Png).unwrap();
-        bytes
-    }
-
-    #[test]
-    fn a_png_keeps_its_pixels() {
-        let photo = decode(&png(5, 3)).unwrap();
-        assert_eq!((photo.pixels.width, photo.pixels.height), (5, 3));
-        assert_eq!(photo.pixels.rgba[4 * 7..4 * 8], [2, 1, 7, 255]);
-        assert_eq!(photo.exif_focal_px, None);
-    }
-
-    #[test]
-    fn every_truncation_is_an_error_or_a_picture() {
-        let whole = png(40, 30);
-        for length in 0..whole.len() {
-            if let Ok(photo) = decode(&whole[..length]) {
-                assert_eq!(photo.pixels.rgba.len(), 40 * 30 * 4);
-            }
-        }
-        assert!(matches!(decode(&[]), Err(PhotoError::UnknownFormat)));
-        assert!(matches!(decode(&whole[..60]), Err(PhotoError::Damaged { .. })));
-    }
-}
+mod tests;

@@ -1,13 +1,17 @@
 //! Photographs: encoded bytes to upright 8-bit RGBA, with what the file says of its lens.
 
 mod decode;
+mod depth;
 mod encode;
+mod kind;
 mod mip;
 mod stored;
 mod thumbnail;
 
-pub use decode::{MAX_PIXELS, PhotoError, decode};
+pub use decode::{MAX_PIXELS, PhotoError, decode, read_header};
+pub use depth::{DepthPixels, decode_depth};
 pub use encode::{png_gray8, png_gray16, png_rgba};
+pub use kind::is_picture;
 pub use mip::half_size;
 pub use stored::plain_extension;
 pub use thumbnail::thumbnail;
@@ -26,5 +30,15 @@ pub struct Pixels {
 pub struct DecodedPhoto {
     pub pixels: Pixels,
     /// The focal length in pixels that the EXIF data gives by its 35 mm equivalent.
+    pub exif_focal_px: Option<f64>,
+}
+
+/// What [`read_header`] returns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhotoHeader {
+    /// In pixels, upright (EXIF orientation applied).
+    pub width: u32,
+    pub height: u32,
+    /// As in [`DecodedPhoto`].
     pub exif_focal_px: Option<f64>,
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Picture, Subject, picture_of};
-use crate::photo::{Pixels, png_gray8, png_gray16};
+use crate::photo::{DepthPixels, Pixels, png_gray8, png_gray16};
 use crate::raster::{PixelRegion, RasterImage, RasterItem, rasterize};
 use crate::scene::{ObjectId, PhotoId, Scene};
 
@@ -47,9 +47,12 @@ pub fn export_picture(
     scene: &Scene,
     photo: PhotoId,
     pixels: Option<Arc<Pixels>>,
+    depth: Option<Arc<DepthPixels>>,
     object: Option<ObjectId>,
 ) -> Option<Picture> {
-    let Some(object) = object else { return picture_of(&Subject::new(scene, photo, pixels)) };
+    let Some(object) = object else {
+        return picture_of(&Subject { depth, ..Subject::new(scene, photo, pixels) });
+    };
     let mut alone = scene.clone();
     alone.objects.retain(|candidate| candidate.id == object);
     let mut picture = picture_of(&Subject::new(&alone, photo, pixels))?;

@@ -42,7 +42,7 @@ pub struct Window {
 
 impl Window {
     /// Windows are so many pixels larger than they need be at most, so that a moving object seldom needs other targets.
-    const STEP_PX: u32 = 128;
+    const STEP_PX: u32 = 64;
 
     pub fn whole(size: [u32; 2]) -> Self {
         Self { corner: [0, 0], size }
@@ -90,11 +90,12 @@ fn drawn_px(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
     let ghosts = picture.ghosts.iter().filter(|_| picture.shows_ghosts());
     let mut corners = Vec::new();
     for item in items.chain(ghosts) {
-        let sphere = sphere_eye(picture, item);
-        if sphere.center.z - sphere.radius < NEAR_MM {
-            return whole;
+        for corner in bounds_eye(picture, item) {
+            if corner.z < NEAR_MM {
+                return whole;
+            }
+            corners.extend(picture.camera.project(corner));
         }
-        corners.extend(box_corners(&sphere).filter_map(|corner| picture.camera.project(corner)));
     }
     let Some(around) = ImageRect::around(corners) else { return [0.0; 4] };
     let margin_px = picture.widths.widest_px() + 1.0;
@@ -104,9 +105,13 @@ fn drawn_px(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
     [min.x, min.y, max.x, max.y]
 }
 
-/// The corners of the box around a sphere: in front of the eye, they project to around what the sphere projects to.
-fn box_corners(sphere: &BoundingSphere) -> impl Iterator<Item = DVec3> + use<> {
-    let BoundingSphere { center, radius } = *sphere;
-    let side = move |bit: u32, corner: u32| if corner & bit == 0 { -radius } else { radius };
-    (0..8).map(move |corner| center + DVec3::new(side(1, corner), side(2, corner), side(4, corner)))
+/// The corners of a mesh's bounds: in front of the eye, they project to around what the mesh projects to.
+fn bounds_eye(picture: &Picture, item: &Item) -> impl Iterator<Item = DVec3> + use<> {
+    let bounds = item.mesh().bounds();
+    let eye_from_object = picture.eye_from_object(item);
+    let side = move |bit: u32, corner: u32| if corner & bit == 0 { bounds.min } else { bounds.max };
+    (0..8).map(move |corner| {
+        let corner = DVec3::new(side(1, corner).x, side(2, corner).y, side(4, corner).z);
+        eye_from_object.transform_point(corner)
+    })
 }

@@ -4,11 +4,13 @@
 //! Knows nothing of the interface: a [`Picture`] in, pixels out. WebGL2 is the floor: no storage buffers, no compute,
 //! multisampled targets are resolved and never sampled. All colours are sRGB-encoded from photo to screen, and blended so.
 
+mod base;
 mod export;
 mod extent;
 mod gpu;
 mod lines;
 mod meshes;
+mod occluder;
 mod passes;
 mod photos;
 mod picture;
@@ -27,6 +29,7 @@ pub use export::{ExportKind, export_picture, raster_png, silhouette_png};
 pub use gpu::GpuError;
 pub use gpu::{Gpu, Usage};
 pub use lines::Line3;
+pub use occluder::Occluder;
 pub use picture::{Item, LineWidths, PhotoLayer, PhotoPlane, Picture, Subject, Surroundings, picture_of};
 pub use pipelines::{SHADERS, ShaderSource};
 pub use readback::{PixelsPending, ReadBackError};

@@ -18,6 +18,8 @@ pub struct Passes<'a> {
     pub meshes: &'a Meshes,
     pub surfaces: &'a Surfaces,
     pub plane_indices: &'a wgpu::Buffer,
+    /// The depth map that hides what is behind it.
+    pub occluder: Option<&'a wgpu::BindGroup>,
     pub usage: &'a Usage,
     pub view: &'a View,
     pub targets: &'a Targets,
@@ -48,6 +50,7 @@ impl Passes<'_> {
         }
         if picture.outlines() || with_ids {
             let mut pass = self.begin_single(encoder, "ids", &self.targets.ids_view);
+            self.draw_occluder(&mut pass, PipelineKind::OccluderOfIds);
             self.draw_items(&mut pass, PipelineKind::Ids, &picture.items, 0);
         }
         if let Some(hidden_ids) = self.targets.hidden_ids.as_ref().filter(|_| picture.outlines_hidden()) {
@@ -63,6 +66,7 @@ impl Passes<'_> {
     fn draw_overlay(&self, pass: &mut wgpu::RenderPass<'_>) {
         let picture = self.picture;
         if picture.fills() {
+            self.draw_occluder(pass, PipelineKind::Occluder);
             match picture.look.mode {
                 mode if draws_edges(mode) => self.draw_mesh_edges(pass),
                 mode if picture.look.x_ray => {
@@ -79,6 +83,15 @@ impl Passes<'_> {
         }
         let in_front = self.view.lines_behind..self.view.line_count;
         self.draw_lines(pass, PipelineKind::LinesInFront, in_front);
+    }
+
+    /// Depth of the real scene, before anything else. X-ray shows what is hidden, by the scene too.
+    fn draw_occluder(&self, pass: &mut wgpu::RenderPass<'_>, kind: PipelineKind) {
+        let Some(occluder) = self.occluder.filter(|_| self.picture.occludes()) else { return };
+        self.set(pass, kind);
+        pass.set_bind_group(1, occluder, &[]);
+        pass.draw(0..3, 0..1);
+        self.usage.add_draw(1);
     }
 
     /// Surfaces as depth alone, then the lines on them that they do not hide.
@@ -222,6 +235,10 @@ fn fill_kind(mode: OverlayMode, is_see_through: bool) -> PipelineKind {
         (OverlayMode::Colors, true) => PipelineKind::ColoredThrough,
         (OverlayMode::Nocs, false) => PipelineKind::Nocs,
         (OverlayMode::Nocs, true) => PipelineKind::NocsThrough,
+        (OverlayMode::Normals, false) => PipelineKind::Normals,
+        (OverlayMode::Normals, true) => PipelineKind::NormalsThrough,
+        (OverlayMode::Depth, false) => PipelineKind::DepthColors,
+        (OverlayMode::Depth, true) => PipelineKind::DepthColorsThrough,
         (_, false) => PipelineKind::Lit,
         (_, true) => PipelineKind::LitThrough,
     }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::Occluder;
 use super::lines::Line3;
 use crate::math::{ImageRect, Intrinsics, Pose};
 use crate::mesh::Mesh;
-use crate::photo::Pixels;
+use crate::photo::{DepthPixels, Pixels};
 use crate::scene::{Layers, Look, MeshAsset, ObjectId, OverlayMode, PhotoId, Rgb, Scene, reference_color};
 
 /// One picture: what a camera sees of a photo and the meshes in it.
@@ -25,6 +26,8 @@ pub struct Picture {
     pub photo_opacity: f32,
     /// Of the photo's size, tinted, straight alpha; between photo and meshes.
     pub masks: Option<PhotoLayer>,
+    /// Hides the parts of items that are behind it; not in a free view.
+    pub occluder: Option<Occluder>,
     pub items: Vec<Item>,
     /// References: outlines only, dashed.
     pub ghosts: Vec<Item>,
@@ -137,6 +140,8 @@ pub struct Subject<'a> {
     pub pixels: Option<Arc<Pixels>>,
     /// Of the photo's size, tinted, straight alpha.
     pub masks: Option<Arc<Pixels>>,
+    /// The photo's depth map, decoded.
+    pub depth: Option<Arc<DepthPixels>>,
     pub selected: Option<ObjectId>,
     pub look: Look,
     pub pixels_per_point: f32,
@@ -150,6 +155,7 @@ impl<'a> Subject<'a> {
             photo,
             pixels,
             masks: None,
+            depth: None,
             selected: None,
             look: Look::default(),
             pixels_per_point: 1.0,
@@ -178,6 +184,9 @@ pub fn picture_of(subject: &Subject<'_>) -> Option<Picture> {
         photo: subject.pixels.clone().map(PhotoLayer),
         photo_opacity: if shown.visible { shown.opacity } else { 0.0 },
         masks: subject.masks.clone().map(PhotoLayer),
+        occluder: shown.depth.as_ref().filter(|depth| depth.occludes).and_then(|depth| {
+            Some(Occluder { pixels: subject.depth.clone()?, mm_per_unit: depth.mm_per_unit })
+        }),
         items: items.collect(),
         ghosts: ghosts_of(scene, photo),
         look: subject.look,
@@ -197,6 +206,12 @@ impl Picture {
         self.photo.is_some() && self.look.layers != Layers::MeshOnly
     }
 
+    /// Nothing of what is around the photo is seen.
+    pub(super) fn is_inside_photo(&self) -> bool {
+        let photo = ImageRect::of_photo(self.camera.width, self.camera.height);
+        self.rect.min.cmpge(photo.min).all() && self.rect.max.cmple(photo.max).all()
+    }
+
     pub(super) fn shows_masks(&self) -> bool {
         self.masks.is_some() && self.look.layers != Layers::MeshOnly
     }
@@ -213,6 +228,10 @@ impl Picture {
     pub(super) fn outlines(&self) -> bool {
         let wanted = self.look.outline || self.look.mode == OverlayMode::Outline;
         self.shows_meshes() && wanted && !self.items.is_empty()
+    }
+
+    pub(super) fn occludes(&self) -> bool {
+        self.occluder.is_some() && self.surroundings.is_none() && !self.look.x_ray
     }
 
     /// Objects that others hide are outlined too.

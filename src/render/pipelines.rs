@@ -1,12 +1,12 @@
 //! Shaders, bind group layouts and pipelines. A pipeline is made when it is first used: most sessions need a few of them.
 
+mod recipe;
+
 use std::cell::OnceCell;
 
-use super::lines::{EdgeInstance, LineInstance};
-use super::meshes::MeshBuffers;
-use super::plane::PlaneVertex;
-use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, OVERLAY_SAMPLES};
+use super::targets::COLOR_FORMAT;
 use super::uniforms::{FrameUniform, ObjectUniform};
+use recipe::{DepthUse, Recipe, Shader};
 
 /// One shader file with the common parts before it.
 #[derive(Debug, Clone, Copy)]
@@ -24,13 +24,14 @@ macro_rules! shader {
 const MESH: ShaderSource = shader!("mesh", "common.wgsl", "object.wgsl", "mesh.wgsl");
 const LINES: ShaderSource = shader!("lines", "common.wgsl", "object.wgsl", "lines.wgsl");
 const PLANE: ShaderSource = shader!("plane", "common.wgsl", "object.wgsl", "plane.wgsl");
+const OCCLUDER: ShaderSource = shader!("occluder", "common.wgsl", "occluder.wgsl");
 const COMPOSE: ShaderSource = shader!("compose", "common.wgsl", "compose.wgsl");
 
 /// Every shader there is, for the test that validates them for each target language.
-pub const SHADERS: &[ShaderSource] = &[MESH, LINES, PLANE, COMPOSE];
+pub const SHADERS: &[ShaderSource] = &[MESH, LINES, PLANE, OCCLUDER, COMPOSE];
 
 /// How many textures [`Pipelines::compose_layout`] holds, besides its sampler.
-pub const COMPOSE_TEXTURES: usize = 7;
+pub const COMPOSE_TEXTURES: usize = 8;
 
 /// Every pipeline there is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,10 +39,14 @@ pub enum PipelineKind {
     Lit,
     Colored,
     Nocs,
-    /// The same three blended over what they hide, at the depth that [`Self::Depth`] left.
+    Normals,
+    DepthColors,
+    /// The same blended over what they hide, at the depth that [`Self::Depth`] left.
     LitThrough,
     ColoredThrough,
     NocsThrough,
+    NormalsThrough,
+    DepthColorsThrough,
     Depth,
     /// Depth a little behind the surface, for the lines on it.
     DepthBehindLines,
@@ -57,13 +62,24 @@ pub enum PipelineKind {
     LinesBefore,
     /// Lines over everything.
     LinesInFront,
-    /// What is composed: the photo, without masks or with them, or what is around objects in a free view; overlay and
-    /// outlines, or the difference with outlines; and a wipe's line.
+    /// A depth map before meshes, and before their ids.
+    Occluder,
+    OccluderOfIds,
+    /// What is composed. Below: what is around the photo, the photo as it is or with changes, its masks; or what is around
+    /// objects in a free view.
+    Background,
     Photo,
-    MaskedPhoto,
+    ChangedPhoto,
+    Masks,
     Backdrop,
+    /// All that is below, drawn before.
+    Base,
+    /// Above: surfaces or how they differ from the photo, outlines, and the line of a wipe.
     Overlay,
     Difference,
+    HiddenOutlines,
+    Outlines,
+    GhostOutlines,
     Wipe,
 }
 
@@ -73,9 +89,13 @@ impl PipelineKind {
         Self::Lit,
         Self::Colored,
         Self::Nocs,
+        Self::Normals,
+        Self::DepthColors,
         Self::LitThrough,
         Self::ColoredThrough,
         Self::NocsThrough,
+        Self::NormalsThrough,
+        Self::DepthColorsThrough,
         Self::Depth,
         Self::DepthBehindLines,
         Self::Ids,
@@ -86,21 +106,43 @@ impl PipelineKind {
         Self::PlaneBefore,
         Self::LinesBefore,
         Self::LinesInFront,
+        Self::Occluder,
+        Self::OccluderOfIds,
+        Self::Background,
         Self::Photo,
-        Self::MaskedPhoto,
+        Self::ChangedPhoto,
+        Self::Masks,
         Self::Backdrop,
+        Self::Base,
         Self::Overlay,
         Self::Difference,
+        Self::HiddenOutlines,
+        Self::Outlines,
+        Self::GhostOutlines,
         Self::Wipe,
     ];
 
     fn is_composed(self) -> bool {
-        self as usize >= Self::Photo as usize
+        self as usize >= Self::Background as usize
+    }
+
+    /// Of what covers the target by one triangle; all others that are composed are rectangles.
+    pub fn composed_vertices(self) -> u32 {
+        if matches!(self, Self::Background | Self::Backdrop | Self::Base) { 3 } else { 6 }
     }
 
     /// Whether it wants a mesh's normals, colours and texture coordinates.
     pub fn reads_attributes(self) -> bool {
-        matches!(self, Self::Lit | Self::LitThrough) || self.reads_textures()
+        let reads_normals = matches!(
+            self,
+            Self::Lit
+                | Self::Normals
+                | Self::DepthColors
+                | Self::LitThrough
+                | Self::NormalsThrough
+                | Self::DepthColorsThrough
+        );
+        reads_normals || self.reads_textures()
     }
 
     /// Whether it is drawn texture by texture.
@@ -116,13 +158,17 @@ pub struct Pipelines {
     pub object_layout: wgpu::BindGroupLayout,
     /// A texture, its sampler, and another texture: of meshes and of the photo's plane.
     pub surface_layout: wgpu::BindGroupLayout,
+    /// A texture of numbers.
+    pub occluder_layout: wgpu::BindGroupLayout,
     pub compose_layout: wgpu::BindGroupLayout,
     object_pipeline_layout: wgpu::PipelineLayout,
     surface_pipeline_layout: wgpu::PipelineLayout,
+    occluder_pipeline_layout: wgpu::PipelineLayout,
     compose_pipeline_layout: wgpu::PipelineLayout,
     mesh: wgpu::ShaderModule,
     lines: wgpu::ShaderModule,
     plane: wgpu::ShaderModule,
+    occluder: wgpu::ShaderModule,
     compose: wgpu::ShaderModule,
     screen_format: wgpu::TextureFormat,
     made: Made,
@@ -137,6 +183,7 @@ impl Pipelines {
         let frame_layout = uniform_layout(device, "frame", size_of::<FrameUniform>(), false);
         let object_layout = uniform_layout(device, "object", size_of::<ObjectUniform>(), true);
         let surface_layout = textures_layout(device, "surface", 2);
+        let occluder_layout = numbers_layout(device);
         let compose_layout = textures_layout(device, "compose", COMPOSE_TEXTURES);
         Self {
             object_pipeline_layout: pipeline_layout(device, &[&frame_layout, &object_layout]),
@@ -144,15 +191,18 @@ impl Pipelines {
                 device,
                 &[&frame_layout, &object_layout, &surface_layout],
             ),
+            occluder_pipeline_layout: pipeline_layout(device, &[&frame_layout, &occluder_layout]),
             compose_pipeline_layout: pipeline_layout(device, &[&frame_layout, &compose_layout]),
             mesh: module(device, MESH),
             lines: module(device, LINES),
             plane: module(device, PLANE),
+            occluder: module(device, OCCLUDER),
             compose: module(device, COMPOSE),
             device: device.clone(),
             frame_layout,
             object_layout,
             surface_layout,
+            occluder_layout,
             compose_layout,
             screen_format,
             made: [const { OnceCell::new() }; PipelineKind::COUNT],
@@ -187,19 +237,16 @@ impl Pipelines {
             Shader::TexturedMesh => (&self.mesh, &self.surface_pipeline_layout),
             Shader::Lines => (&self.lines, &self.object_pipeline_layout),
             Shader::Plane => (&self.plane, &self.surface_pipeline_layout),
+            Shader::Occluder => (&self.occluder, &self.occluder_pipeline_layout),
             Shader::Compose => (&self.compose, &self.compose_pipeline_layout),
         };
         let target = wgpu::ColorTargetState {
             format,
             blend: recipe.blend,
-            write_mask: if recipe.fragment.is_some() {
-                wgpu::ColorWrites::ALL
-            } else {
-                wgpu::ColorWrites::empty()
-            },
+            write_mask: if recipe.writes_color { wgpu::ColorWrites::ALL } else { wgpu::ColorWrites::empty() },
         };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(recipe.fragment.unwrap_or(recipe.vertex)),
+            label: Some(recipe.fragment),
             layout: Some(layout),
             vertex: wgpu::VertexState {
                 module,
@@ -216,173 +263,13 @@ impl Pipelines {
             },
             fragment: Some(wgpu::FragmentState {
                 module,
-                // A pass without colour still has a colour target; it writes nothing there.
-                entry_point: Some(recipe.fragment.unwrap_or("fs_id")),
+                entry_point: Some(recipe.fragment),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 targets: &[Some(target)],
             }),
             multiview_mask: None,
             cache: None,
         })
-    }
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Shader {
-    Mesh,
-    TexturedMesh,
-    Lines,
-    Plane,
-    Compose,
-}
-
-/// How a pipeline treats depth. It is reversed: nearer is greater.
-#[derive(Debug, Clone, Copy)]
-struct DepthUse {
-    writes: bool,
-    passes: wgpu::CompareFunction,
-    /// Pixels of the surface's own slope that it is moved away by.
-    slope_bias: f32,
-}
-
-impl DepthUse {
-    const SOLID: Self = Self { writes: true, passes: wgpu::CompareFunction::Greater, slope_bias: 0.0 };
-    /// Half the width of a line on a screen of two pixels a point, and the part of a pixel that sampling takes.
-    const SOLID_BEHIND_LINES: Self = Self { slope_bias: -2.5, ..Self::SOLID };
-    const SEEN: Self = Self { writes: false, passes: wgpu::CompareFunction::GreaterEqual, slope_bias: 0.0 };
-    const IGNORED: Self = Self { passes: wgpu::CompareFunction::Always, ..Self::SEEN };
-
-    fn state(self) -> wgpu::DepthStencilState {
-        wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(self.writes),
-            depth_compare: Some(self.passes),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState { constant: 0, slope_scale: self.slope_bias, clamp: 0.0 },
-        }
-    }
-}
-
-/// Where something is already, and nowhere else: for what lies before a mesh that lets through what is behind it.
-const ATOP: wgpu::BlendState = wgpu::BlendState {
-    color: wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::DstAlpha,
-        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
-        operation: wgpu::BlendOperation::Add,
-    },
-    alpha: wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::Zero,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
-    },
-};
-
-/// The greater of both: where a mesh's edges meet, their ends do not add up to dots.
-const UNION: wgpu::BlendState = {
-    let component = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Max,
-    };
-    wgpu::BlendState { color: component, alpha: component }
-};
-
-const OVER: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
-
-type Buffers = &'static [Option<wgpu::VertexBufferLayout<'static>>];
-
-const POSITIONS: Buffers = &[Some(MeshBuffers::POSITIONS)];
-const VERTICES: Buffers = &[Some(MeshBuffers::POSITIONS), Some(MeshBuffers::ATTRIBUTES)];
-const EDGES: Buffers = &[Some(EdgeInstance::LAYOUT)];
-const LINE_ENDS: Buffers = &[Some(LineInstance::LAYOUT)];
-const PLANE_VERTICES: Buffers = &[Some(PlaneVertex::LAYOUT)];
-
-#[derive(Debug, Clone, Copy)]
-struct Recipe {
-    shader: Shader,
-    vertex: &'static str,
-    /// `None` draws depth alone.
-    fragment: Option<&'static str>,
-    buffers: Buffers,
-    depth: Option<DepthUse>,
-    blend: Option<wgpu::BlendState>,
-    samples: u32,
-}
-
-impl Recipe {
-    fn of(kind: PipelineKind) -> Self {
-        use PipelineKind as Kind;
-        let lit = Self {
-            shader: Shader::Mesh,
-            vertex: "vs_lit",
-            fragment: Some("fs_lit"),
-            buffers: VERTICES,
-            depth: Some(DepthUse::SOLID),
-            blend: None,
-            samples: OVERLAY_SAMPLES,
-        };
-        let colored =
-            Self { shader: Shader::TexturedMesh, vertex: "vs_colored", fragment: Some("fs_colored"), ..lit };
-        let nocs = Self { vertex: "vs_coordinates", fragment: Some("fs_nocs"), buffers: POSITIONS, ..lit };
-        let depth = Self { vertex: "vs_position", fragment: None, buffers: POSITIONS, ..lit };
-        let through = |solid: Self| Self { depth: Some(DepthUse::SEEN), blend: Some(OVER), ..solid };
-        let lines = Self {
-            shader: Shader::Lines,
-            vertex: "vs_line",
-            fragment: Some("fs_line"),
-            buffers: LINE_ENDS,
-            depth: Some(DepthUse::SEEN),
-            blend: Some(OVER),
-            ..lit
-        };
-        let edges = Self { vertex: "vs_edge", buffers: EDGES, blend: Some(UNION), ..lines };
-        let plane = Self {
-            shader: Shader::Plane,
-            vertex: "vs_plane",
-            fragment: Some("fs_plane"),
-            buffers: PLANE_VERTICES,
-            // Its own border runs on it.
-            depth: Some(DepthUse::SOLID_BEHIND_LINES),
-            blend: Some(OVER),
-            ..lit
-        };
-        let composed = Self {
-            shader: Shader::Compose,
-            vertex: "vs_target",
-            fragment: Some("fs_photo"),
-            buffers: &[],
-            depth: None,
-            blend: None,
-            samples: 1,
-        };
-        let overlay =
-            Self { vertex: "vs_window", fragment: Some("fs_overlay"), blend: Some(OVER), ..composed };
-        match kind {
-            Kind::Lit => lit,
-            Kind::Colored => colored,
-            Kind::Nocs => nocs,
-            Kind::LitThrough => through(lit),
-            Kind::ColoredThrough => through(colored),
-            Kind::NocsThrough => through(nocs),
-            Kind::Depth => depth,
-            Kind::DepthBehindLines => Self { depth: Some(DepthUse::SOLID_BEHIND_LINES), ..depth },
-            Kind::Ids => Self { fragment: Some("fs_id"), samples: 1, ..depth },
-            Kind::Edges => edges,
-            Kind::HiddenEdges => {
-                Self { fragment: Some("fs_faint_line"), depth: Some(DepthUse::IGNORED), ..edges }
-            }
-            Kind::PlaneBehind => plane,
-            Kind::LinesBehind => lines,
-            Kind::PlaneBefore => Self { blend: Some(ATOP), ..plane },
-            Kind::LinesBefore => Self { blend: Some(ATOP), ..lines },
-            Kind::LinesInFront => Self { depth: Some(DepthUse::IGNORED), ..lines },
-            Kind::Photo => composed,
-            Kind::MaskedPhoto => Self { fragment: Some("fs_masked_photo"), ..composed },
-            Kind::Backdrop => Self { fragment: Some("fs_backdrop"), ..composed },
-            Kind::Overlay => overlay,
-            Kind::Difference => Self { fragment: Some("fs_difference"), ..overlay },
-            Kind::Wipe => Self { vertex: "vs_wipe", fragment: Some("fs_wipe"), ..overlay },
-        }
     }
 }
 
@@ -441,4 +328,21 @@ fn textures_layout(device: &wgpu::Device, label: &str, textures: usize) -> wgpu:
         .collect();
     device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+fn numbers_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("occluder"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                // 32-bit floats are read as they are: not every device can filter them.
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        }],
+    })
 }

@@ -2,7 +2,9 @@
 
 use wgpu::util::DeviceExt;
 
+use super::base::base_parts;
 use super::meshes::Meshes;
+use super::occluder::OccluderTexture;
 use super::passes::{Passes, begin_pass};
 use super::photos::PhotoTextures;
 use super::pipelines::{COMPOSE_TEXTURES, PipelineKind, Pipelines};
@@ -39,6 +41,7 @@ pub struct Renderer {
     surfaces: Surfaces,
     photos: PhotoTextures,
     masks: PhotoTextures,
+    occluder: OccluderTexture,
     meshes: Meshes,
     plane_indices: wgpu::Buffer,
     views: [View; ViewSlot::COUNT],
@@ -59,6 +62,7 @@ impl Renderer {
             surfaces: Surfaces::new(&gpu, &usage, &pipelines),
             photos: PhotoTextures::keeping(KEPT_PHOTOS),
             masks: PhotoTextures::keeping(KEPT_MASKS),
+            occluder: OccluderTexture::default(),
             meshes: Meshes::default(),
             views: std::array::from_fn(|_| View::new(&gpu, &pipelines)),
             plane_indices,
@@ -94,6 +98,27 @@ impl Renderer {
         size: [u32; 2],
     ) {
         self.draw(slot, encoder, Drawn { picture: picture.clone(), corner, size, with_ids: false });
+        self.draw_base(slot, encoder);
+    }
+
+    /// Keeps what lies below the meshes once it stays the same.
+    fn draw_base(&mut self, slot: ViewSlot, encoder: &mut wgpu::CommandEncoder) {
+        let view = &mut self.views[slot as usize];
+        let (Some(drawn), Some(group)) = (&view.drawn, view.compose_group.clone()) else { return };
+        let Some(texture) = view.base.wanted(&self.gpu.device, drawn).cloned() else { return };
+        let mut pass = begin_pass(encoder, "base", &texture, None, None);
+        let [x, y, width, height] =
+            [drawn.corner[0], drawn.corner[1], drawn.size[0], drawn.size[1]].map(|value| value as f32);
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
+        pass.set_bind_group(0, &view.frame_group, &[]);
+        pass.set_bind_group(1, &group, &[]);
+        let parts: Vec<PipelineKind> = base_parts(&drawn.picture).collect();
+        self.draw_parts(&mut pass, &parts, |kind| self.pipelines.get(kind));
+        drop(pass);
+        if let Some(drawn) = self.views[slot as usize].drawn.take() {
+            self.bind_textures(slot, &drawn);
+            self.views[slot as usize].drawn = Some(drawn);
+        }
     }
 
     /// Composes the prepared picture within a render pass of the screen's format.
@@ -136,10 +161,13 @@ impl Renderer {
         }
         let picture = &wanted.picture;
         self.upload_meshes(slot, picture);
+        if let Some(occluder) = &picture.occluder {
+            self.occluder.ensure(&self.gpu, &self.usage, &self.pipelines, occluder);
+        }
         let view = &mut self.views[slot as usize];
         let window = view.fit_targets(&self.gpu, &wanted);
         view.upload(&self.gpu, &self.usage, &self.pipelines, &wanted, &window);
-        self.bind_textures(slot, picture, wanted.size);
+        self.bind_textures(slot, &wanted);
         let view = &self.views[slot as usize];
         if let Some(targets) = &view.targets {
             let passes = Passes {
@@ -147,6 +175,7 @@ impl Renderer {
                 meshes: &self.meshes,
                 surfaces: &self.surfaces,
                 plane_indices: &self.plane_indices,
+                occluder: self.occluder.group(),
                 usage: &self.usage,
                 view,
                 targets,
@@ -167,7 +196,8 @@ impl Renderer {
     }
 
     /// Binds what the composition and the plane read.
-    fn bind_textures(&mut self, slot: ViewSlot, picture: &Picture, size: [u32; 2]) {
+    fn bind_textures(&mut self, slot: ViewSlot, drawn: &Drawn) {
+        let Drawn { picture, size, .. } = drawn;
         let blank = self.surfaces.blank.clone();
         let texture = |textures: &mut PhotoTextures, layer: &Option<PhotoLayer>| match layer {
             Some(layer) => textures.view(&self.gpu, &self.usage, &layer.0).clone(),
@@ -176,7 +206,11 @@ impl Renderer {
         let photo = texture(&mut self.photos, &picture.photo);
         let masks = texture(&mut self.masks, &picture.masks);
         let zoom = f64::from(size[0]) / picture.rect.size().x;
-        let sampler = if zoom >= NEAREST_FROM_ZOOM { &self.surfaces.nearest } else { &self.surfaces.linear };
+        let sampler = match zoom {
+            _ if zoom >= NEAREST_FROM_ZOOM => &self.surfaces.nearest,
+            _ if zoom >= 1.0 => &self.surfaces.magnifying,
+            _ => &self.surfaces.linear,
+        };
         let view = &mut self.views[slot as usize];
         view.plane_group = picture.plane().map(|_| self.surfaces.of_plane(&self.gpu, &photo, &masks));
         let Some(targets) = &view.targets else { return };
@@ -188,10 +222,11 @@ impl Renderer {
             &masks,
             targets.hidden_ids.as_ref().unwrap_or(&blank),
             targets.backdrop.as_ref().unwrap_or(&blank),
+            view.base.of(drawn).unwrap_or(&blank),
         ];
         let mut entries =
             vec![wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(sampler) }];
-        entries.extend([0, 2, 3, 4, 5, 6, 7].into_iter().zip(textures).map(|(binding, texture)| {
+        entries.extend([0, 2, 3, 4, 5, 6, 7, 8].into_iter().zip(textures).map(|(binding, texture)| {
             wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(texture) }
         }));
         view.compose_group = Some(self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -211,7 +246,18 @@ impl Renderer {
         let (Some(group), Some(drawn)) = (&view.compose_group, &view.drawn) else { return };
         pass.set_bind_group(0, &view.frame_group, &[]);
         pass.set_bind_group(1, group, &[]);
-        for (kind, vertices) in composed_parts(&drawn.picture) {
+        self.draw_parts(pass, &composed_parts(&drawn.picture, view.base.of(drawn).is_some()), pipeline);
+    }
+
+    /// Pipelines that take everything from the two groups that are bound.
+    fn draw_parts<'a>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        parts: &[PipelineKind],
+        pipeline: impl Fn(PipelineKind) -> &'a wgpu::RenderPipeline,
+    ) {
+        for &kind in parts {
+            let vertices = kind.composed_vertices();
             pass.set_pipeline(pipeline(kind));
             pass.draw(0..vertices, 0..1);
             self.usage.add_draw(vertices / 3);
@@ -219,25 +265,28 @@ impl Renderer {
     }
 }
 
-/// What a picture is composed of, from below, and how many vertices each part has.
-fn composed_parts(picture: &Picture) -> impl Iterator<Item = (PipelineKind, u32)> {
+/// What a picture is composed of, from below.
+fn composed_parts(picture: &Picture, has_base: bool) -> Vec<PipelineKind> {
+    use PipelineKind as Kind;
+    let mut parts = Vec::new();
     let is_free = picture.surroundings.is_some();
-    let below = match is_free {
-        true => PipelineKind::Backdrop,
-        false if picture.shows_masks() => PipelineKind::MaskedPhoto,
-        false => PipelineKind::Photo,
-    };
+    match is_free {
+        true => parts.push(Kind::Backdrop),
+        false if has_base => parts.push(Kind::Base),
+        false => parts.extend(base_parts(picture)),
+    }
     // In a free view the photo is somewhere else than the meshes, and there is nothing to take a difference to.
     let is_difference = picture.look.difference && !is_free && picture.fills();
-    let overlay = if is_difference { PipelineKind::Difference } else { PipelineKind::Overlay };
-    let has_overlay = picture.fills() || picture.outlines() || picture.shows_ghosts();
     let has_lines = picture.lines().iter().any(|line| line.in_front);
-    let has_wipe = picture.look.wipe.is_some() && picture.shows_meshes();
-    [
-        Some((below, 3)),
-        (has_overlay || has_lines).then_some((overlay, 6)),
-        has_wipe.then_some((PipelineKind::Wipe, 6)),
-    ]
-    .into_iter()
-    .flatten()
+    let when = |condition: bool, kind: Kind| condition.then_some(kind);
+    let above = [
+        when(is_difference, Kind::Difference),
+        when(!is_difference && (picture.fills() || has_lines), Kind::Overlay),
+        when(picture.outlines_hidden(), Kind::HiddenOutlines),
+        when(picture.outlines(), Kind::Outlines),
+        when(picture.shows_ghosts(), Kind::GhostOutlines),
+        when(picture.look.wipe.is_some() && picture.shows_meshes(), Kind::Wipe),
+    ];
+    parts.extend(above.into_iter().flatten());
+    parts
 }

@@ -5,6 +5,9 @@ use super::pipelines::Pipelines;
 use super::{Gpu, Usage};
 use crate::photo::Pixels;
 
+/// Textures have fewer.
+const ALL_LEVELS: f32 = 32.0;
+
 #[derive(Debug)]
 pub struct Surfaces {
     layout: wgpu::BindGroupLayout,
@@ -13,6 +16,8 @@ pub struct Surfaces {
     /// For a mesh without a texture: white.
     pub no_texture: wgpu::BindGroup,
     pub linear: wgpu::Sampler,
+    /// The same without the smaller copies.
+    pub magnifying: wgpu::Sampler,
     pub nearest: wgpu::Sampler,
     /// A mesh's texture goes on beyond its border.
     repeating: wgpu::Sampler,
@@ -20,29 +25,29 @@ pub struct Surfaces {
 
 impl Surfaces {
     pub fn new(gpu: &Gpu, usage: &Usage, pipelines: &Pipelines) -> Self {
-        let sampler = |mag_filter, mipmap_filter, address_mode| {
+        let sampler = |mag_filter, mipmap_filter, address_mode, lod_max_clamp| {
             gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 address_mode_u: address_mode,
                 address_mode_v: address_mode,
                 mag_filter,
                 min_filter: wgpu::FilterMode::Linear,
                 mipmap_filter,
+                lod_max_clamp,
                 ..wgpu::SamplerDescriptor::default()
             })
         };
         let (filter, mip_filter) = (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear);
-        let repeating = sampler(filter, mip_filter, wgpu::AddressMode::Repeat);
+        let one_level = wgpu::MipmapFilterMode::Nearest;
+        let repeating = sampler(filter, mip_filter, wgpu::AddressMode::Repeat, ALL_LEVELS);
         let white = Pixels { width: 1, height: 1, rgba: vec![255; 4] };
         let blank = upload_texture(gpu, usage, &white);
         let layout = pipelines.surface_layout.clone();
         Self {
             no_texture: group(gpu, &layout, &blank, &repeating, &blank),
-            linear: sampler(filter, mip_filter, wgpu::AddressMode::ClampToEdge),
-            nearest: sampler(
-                wgpu::FilterMode::Nearest,
-                wgpu::MipmapFilterMode::Nearest,
-                wgpu::AddressMode::ClampToEdge,
-            ),
+            linear: sampler(filter, mip_filter, wgpu::AddressMode::ClampToEdge, ALL_LEVELS),
+            // Said here, not by the shader: software renderers then leave out what chooses a level.
+            magnifying: sampler(filter, one_level, wgpu::AddressMode::ClampToEdge, 0.0),
+            nearest: sampler(wgpu::FilterMode::Nearest, one_level, wgpu::AddressMode::ClampToEdge, 0.0),
             blank,
             layout,
             repeating,

@@ -54,9 +54,10 @@ impl Targets {
     }
 }
 
-/// A texture that a picture is composed into and read back from.
+/// A texture that a picture is composed into, and read back from or drawn again.
 pub fn picture_target(device: &wgpu::Device, size: [u32; 2]) -> wgpu::Texture {
-    target(device, "picture", size, COLOR_FORMAT, 1, wgpu::TextureUsages::COPY_SRC)
+    let read = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+    target(device, "picture", size, COLOR_FORMAT, 1, read)
 }
 
 fn target(

@@ -65,12 +65,7 @@ impl FrameUniform {
             outline: outline_part(picture),
             adjustment: adjustment_part(&picture.look.photo),
             shown: shown_part(picture, size),
-            more: [
-                flag(picture.shows_masks()),
-                flag(picture.outlines_hidden()),
-                0.0,
-                picture.look.mode as u32 as f32,
-            ],
+            more: [flag(picture.shows_masks()), 0.0, 0.0, 0.0],
             lines: lines_part(picture),
             window: [window.corner[0], window.corner[1], window.size[0], window.size[1]]
                 .map(|value| value as f32),
@@ -99,16 +94,14 @@ fn outline_part(picture: &Picture) -> [f32; 4] {
 }
 
 fn adjustment_part(photo: &PhotoAdjustment) -> [f32; 4] {
-    let is_changed = *photo != PhotoAdjustment::default();
     // A quarter of the contrast at −1, four times at 1.
-    [photo.brightness, (2.0 * photo.contrast).exp2(), 1.0 + photo.saturation, flag(is_changed)]
+    [photo.brightness, (2.0 * photo.contrast).exp2(), 1.0 + photo.saturation, flag(!photo.is_default())]
 }
 
 fn shown_part(picture: &Picture, size: [u32; 2]) -> [f32; 4] {
     let wipe = picture.look.wipe.filter(|_| picture.shows_meshes());
-    let has_overlay = picture.fills() || picture.lines().iter().any(|line| line.in_front);
     [
-        flag(has_overlay),
+        0.0,
         wipe.map_or(0.0, |part| part * size[0] as f32),
         wipe.map_or(0.0, |_| picture.widths.wipe_px / 2.0),
         0.0,

@@ -1,5 +1,6 @@
 //! One place where pictures are drawn: its targets, its uniforms, and what they hold.
 
+use super::base::Base;
 use super::extent::Window;
 use super::lines::LineInstance;
 use super::pipelines::Pipelines;
@@ -51,6 +52,7 @@ pub struct View {
     pub plane_group: Option<wgpu::BindGroup>,
     pub targets: Option<Targets>,
     pub compose_group: Option<wgpu::BindGroup>,
+    pub base: Base,
     /// What the targets hold, so that a repaint of the interface draws no mesh.
     pub drawn: Option<Drawn>,
 }
@@ -75,6 +77,7 @@ impl View {
             plane_group: None,
             targets: None,
             compose_group: None,
+            base: Base::default(),
             drawn: None,
         }
     }

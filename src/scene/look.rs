@@ -61,6 +61,13 @@ pub struct PhotoAdjustment {
     pub saturation: f32,
 }
 
+impl PhotoAdjustment {
+    /// The photo is shown as it is.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// What of photo and meshes is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Layers {

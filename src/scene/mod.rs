@@ -5,10 +5,12 @@
 mod annotation;
 mod asset;
 mod color;
+mod depth_map;
 mod look;
 mod mask;
 mod mesh_frame;
 mod placement;
+mod symmetry;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -20,10 +22,12 @@ use crate::math::{Intrinsics, Pose};
 pub use annotation::{Annotation, AnnotationState, PoseSource};
 pub use asset::{CompanionFile, MeshAsset, PhotoAsset, Sha256};
 pub use color::{Rgb, free_object_color, mask_color, object_color, reference_color};
+pub use depth_map::DepthMap;
 pub use look::{Layers, Look, OverlayMode, PhotoAdjustment};
 pub use mask::{Mask, MaskId};
 pub use mesh_frame::{MeshFrame, MeshFrameError};
 pub use placement::untouched_pose;
+pub use symmetry::{ContinuousSymmetry, Symmetries};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PhotoId(pub u32);
@@ -47,6 +51,7 @@ pub struct Photo {
     pub opacity: f32,
     /// Camera and poses stay as they are.
     pub locked: bool,
+    pub depth: Option<DepthMap>,
 }
 
 /// Where a photo's intrinsics came from; a guess is always shown as one.
@@ -82,6 +87,8 @@ pub struct Object {
     pub locked: bool,
     /// Objects of one group move together.
     pub link: Option<u32>,
+    /// In the `object` frame.
+    pub symmetries: Symmetries,
 }
 
 /// A named, read-only set of poses beside the annotations.
@@ -177,6 +184,7 @@ impl Scene {
             visible: true,
             opacity: 1.0,
             locked: false,
+            depth: None,
         });
         id
     }
@@ -195,6 +203,7 @@ impl Scene {
             visible: true,
             locked: false,
             link: None,
+            symmetries: Symmetries::default(),
         });
         id
     }
@@ -230,7 +239,9 @@ impl Scene {
     /// Every file that the scene needs, each content once.
     pub fn files(&self) -> Vec<SceneFile<'_>> {
         let photos = self.photos.iter().map(|photo| &photo.asset);
-        let images = photos.chain(self.masks.iter().map(|mask| &mask.asset)).map(|asset| SceneFile {
+        let depths = self.photos.iter().filter_map(|photo| Some(&photo.depth.as_ref()?.asset));
+        let masks = self.masks.iter().map(|mask| &mask.asset);
+        let images = photos.chain(depths).chain(masks).map(|asset| SceneFile {
             name: &asset.file_name,
             sha256: asset.sha256,
             bytes: &asset.bytes,

@@ -13,6 +13,7 @@ impl Session {
             Command::Run(id) => self.run(id, now_ms),
             Command::Import(batch) => Ok(self.import(*batch, now_ms)),
             Command::ImportMasks(images) => self.import_masks(&images),
+            Command::ImportDepth(image) => self.import_depth(image),
             Command::Open(opening) => Ok(self.open(*opening, now_ms)),
             Command::Answer(answer) => self.answer(answer, now_ms),
             Command::RenameScene(name) => {

@@ -19,6 +19,8 @@ pub enum Command {
     Import(Box<Batch>),
     /// Masks for the photo that is shown, and for the selected object.
     ImportMasks(Vec<Arc<PhotoAsset>>),
+    /// A depth map for the photo that is shown, in place of the one it has.
+    ImportDepth(Arc<PhotoAsset>),
     /// A saved scene in place of this one.
     Open(Box<Opening>),
     Answer(Answer),
@@ -112,6 +114,11 @@ pub enum PhotoChange {
     Visible(bool),
     Opacity(f32),
     Locked(bool),
+    /// Millimetres a step of the depth map.
+    DepthScale(f64),
+    /// Whether what is behind the depth map is hidden.
+    DepthOccludes(bool),
+    WithoutDepth,
 }
 
 #[derive(Debug, Clone, PartialEq)]

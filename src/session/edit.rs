@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::apply::Applied;
 use super::{BurstKey, CommandError, Effect, MaskChange, Notice, ObjectChange, PhotoChange, Session};
 use crate::math::Pose;
-use crate::scene::{Annotation, AnnotationState, MaskId, MeshFrame, Object, ObjectId, PhotoAsset, PhotoId};
+use crate::scene::{
+    Annotation, AnnotationState, DepthMap, MaskId, MeshFrame, Object, ObjectId, PhotoAsset, PhotoId,
+};
 
 /// A duplicate is put beside its original by this part of its radius.
 const DUPLICATE_OFFSET: f64 = 0.5;
@@ -18,7 +20,15 @@ impl Session {
             PhotoChange::Visible(_) => "Show or hide photo",
             PhotoChange::Opacity(_) => "Photo opacity",
             PhotoChange::Locked(_) => "Lock or unlock photo",
+            PhotoChange::DepthScale(_) => "Depth map's unit",
+            PhotoChange::DepthOccludes(_) => "Hide behind depth map",
+            PhotoChange::WithoutDepth => "Remove depth map",
         };
+        if let PhotoChange::DepthScale(scale) = change
+            && !(scale.is_finite() && scale > 0.0)
+        {
+            return Err(CommandError::Failed("the depth map's unit has to be above 0 mm".to_owned()));
+        }
         let key = BurstKey { label, photo: Some(id), target: id.0 };
         self.change_smoothly(key, now_ms, |scene| {
             let Some(photo) = scene.photo_mut(id) else { return };
@@ -27,6 +37,12 @@ impl Session {
                 PhotoChange::Visible(visible) => photo.visible = visible,
                 PhotoChange::Opacity(opacity) => photo.opacity = opacity.clamp(0.0, 1.0),
                 PhotoChange::Locked(locked) => photo.locked = locked,
+                PhotoChange::WithoutDepth => photo.depth = None,
+                PhotoChange::DepthScale(_) | PhotoChange::DepthOccludes(_) => {
+                    if let Some(depth) = &mut photo.depth {
+                        change_depth(depth, &change);
+                    }
+                }
             }
         })
     }
@@ -82,10 +98,32 @@ impl Session {
             .with_mesh_from_file(object.mesh_from_file, frame.0)
             .map_err(|error| CommandError::Failed(error.to_string()))?;
         let mesh = Arc::new(mesh);
+        let new_from_old = frame.0 * object.mesh_from_file.inverse();
+        let symmetries = object.symmetries.of_transformed(&new_from_old);
         self.change("Mirror or space mesh", |scene| {
             if let Some(object) = scene.object_mut(id) {
+                object.symmetries = symmetries;
                 object.mesh = mesh;
                 object.mesh_from_file = frame.0;
+            }
+        })
+    }
+
+    /// Nothing says what a step of it is; most are in millimetres.
+    pub(super) fn import_depth(&mut self, image: Arc<PhotoAsset>) -> Applied {
+        let photo = self.photo().ok_or(CommandError::NotAvailable("Import depth map", "no photo is open"))?;
+        let (id, width, height) = (photo.id, photo.asset.width, photo.asset.height);
+        if (image.width, image.height) != (width, height) {
+            return Err(CommandError::Failed(format!(
+                "{}: a depth map of the photo's size, {width} × {height} pixels, expected; this has {} × {}",
+                image.file_name, image.width, image.height
+            )));
+        }
+        let known_scale = photo.depth.as_ref().map(|depth| depth.mm_per_unit);
+        let depth = DepthMap { asset: image, mm_per_unit: known_scale.unwrap_or(1.0), occludes: true };
+        self.change("Import depth map", |scene| {
+            if let Some(photo) = scene.photo_mut(id) {
+                photo.depth = Some(depth);
             }
         })
     }
@@ -142,6 +180,14 @@ impl Session {
         self.change("Unlink objects", |scene| {
             scene.unlink(&selection);
         })
+    }
+}
+
+fn change_depth(depth: &mut DepthMap, change: &PhotoChange) {
+    match change {
+        PhotoChange::DepthScale(mm_per_unit) => depth.mm_per_unit = *mm_per_unit,
+        PhotoChange::DepthOccludes(occludes) => depth.occludes = *occludes,
+        _ => {}
     }
 }
 

@@ -41,6 +41,7 @@ pub enum Pick {
     Photos,
     Meshes,
     Masks,
+    DepthMap,
     Cameras,
     Poses,
     Workspace,

@@ -7,7 +7,7 @@ use glam::DMat4;
 use super::log::Log;
 use super::{Answer, Arrangement, CommandError, Effect, History, Notice, Question, Session, Waiting};
 use crate::formats::{CameraFile, Document, Incoming, Outcome, PosesAs};
-use crate::scene::{CameraOrigin, Mask, MeshAsset, ObjectId, PhotoAsset, PhotoId, Scene};
+use crate::scene::{CameraOrigin, DepthMap, Mask, MeshAsset, ObjectId, PhotoAsset, PhotoId, Scene};
 
 /// The files of one drop, read.
 #[derive(Debug, Clone, Default)]
@@ -279,6 +279,7 @@ impl Session {
         }
         let outcome = incoming.apply(&mut scene, PosesAs::Annotations, now_ms);
         restore_masks(&mut scene, document, &opening.photos);
+        restore_depth_maps(&mut scene, document, &opening.photos);
         self.scene = scene;
         self.questions.clear();
         self.waiting.clear();
@@ -330,6 +331,19 @@ fn restore_masks(scene: &mut Scene, document: &Document, images: &[Arc<PhotoAsse
                 visible: mask.visible,
                 ..known.clone()
             };
+        }
+    }
+}
+
+fn restore_depth_maps(scene: &mut Scene, document: &Document, images: &[Arc<PhotoAsset>]) {
+    let hashes: Vec<_> = document.photo_hashes().collect();
+    for saved in document.depth_maps() {
+        let asset = images.iter().find(|image| image.sha256 == saved.sha256);
+        let photo = hashes.get(saved.photo).copied().flatten();
+        let photo = scene.photos.iter_mut().find(|candidate| Some(candidate.asset.sha256) == photo);
+        if let (Some(asset), Some(photo)) = (asset, photo) {
+            let (mm_per_unit, occludes) = (saved.mm_per_unit, saved.occludes);
+            photo.depth = Some(DepthMap { asset: asset.clone(), mm_per_unit, occludes });
         }
     }
 }

@@ -172,6 +172,7 @@ fn effect_of(id: CommandId) -> Option<Effect> {
         CommandId::ImportPhotos => Effect::PickFiles(Pick::Photos),
         CommandId::ImportMeshes => Effect::PickFiles(Pick::Meshes),
         CommandId::ImportMasks => Effect::PickFiles(Pick::Masks),
+        CommandId::ImportDepth => Effect::PickFiles(Pick::DepthMap),
         CommandId::ImportCamera => Effect::PickFiles(Pick::Cameras),
         CommandId::ImportPoses => Effect::PickFiles(Pick::Poses),
         CommandId::OpenWorkspace => Effect::PickFiles(Pick::Workspace),

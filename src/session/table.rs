@@ -89,6 +89,7 @@ commands![
     (ImportPhotos, "import_photos", File, "Import photos…", "PNG or JPEG", None, always),
     (ImportMeshes, "import_meshes", File, "Import meshes…", "3D models of the objects", None, always),
     (ImportMasks, "import_masks", File, "Import masks…", "Images of the shown photo's size: what is not black is in the mask", None, needs_photo),
+    (ImportDepth, "import_depth", File, "Import depth map…", "A grey image of the shown photo's size, mostly of 16 bits: hides what is behind the scene", None, needs_photo),
     (ImportCamera, "import_camera", File, "Import camera…", "Intrinsics for the photos", None, always),
     (ImportPoses, "import_poses", File, "Import poses…", "To go on from, or to compare with", None, always),
     (OpenWorkspace, "open_workspace", File, "Open workspace…", "A zip with photos, meshes and poses", None, always),

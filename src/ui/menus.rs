@@ -26,6 +26,7 @@ pub const MENUS: [MenuPlan; 5] = [
                 CommandId::ImportPhotos,
                 CommandId::ImportMeshes,
                 CommandId::ImportMasks,
+                CommandId::ImportDepth,
                 CommandId::ImportCamera,
                 CommandId::ImportPoses,
                 CommandId::OpenWorkspace,

@@ -104,6 +104,8 @@ pub struct Surroundings<'a> {
     pub pixels: Option<std::sync::Arc<crate::photo::Pixels>>,
     /// Its masks, tinted.
     pub masks: Option<std::sync::Arc<crate::photo::Pixels>>,
+    /// Its depth map, once it is decoded.
+    pub depth: Option<std::sync::Arc<crate::photo::DepthPixels>>,
     pub saving: Saving,
     /// What is being loaded.
     pub busy: Option<Busy>,

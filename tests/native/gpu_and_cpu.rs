@@ -90,6 +90,7 @@ pub fn picture(camera: Intrinsics, rect: ImageRect, mesh: Arc<MeshAsset>, pose: 
         ghosts: Vec::new(),
         eye_from_camera: Pose::IDENTITY,
         masks: None,
+        occluder: None,
         look: Look { outline: false, ..Look::default() },
         widths: LineWidths::for_scale(1.0),
         surroundings: None,

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::formats::{NamedFile, kept, read_mesh_with, read_photo};
 use crate::mesh::{Bvh, Material, Mesh, MeshData, Paint};
-use crate::photo::{Pixels, decode, thumbnail};
+use crate::photo::{DepthPixels, Pixels, decode, decode_depth, thumbnail};
 use crate::platform::Background;
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
 use crate::ui::THUMBNAIL_SIDE_PX;
@@ -27,6 +27,7 @@ pub enum JobKind {
     Photo,
     Mesh,
     Thumbnail,
+    DepthMap,
 }
 
 impl JobKind {
@@ -35,6 +36,7 @@ impl JobKind {
             Self::Photo => 0,
             Self::Mesh => 1,
             Self::Thumbnail => 2,
+            Self::DepthMap => 3,
         }
     }
 }
@@ -52,6 +54,7 @@ pub enum Done {
     Photo(Arc<PhotoAsset>, Arc<Pixels>),
     Mesh(Arc<MeshAsset>, Vec<String>),
     Thumbnail(Pixels),
+    DepthMap(Arc<PhotoAsset>, Arc<DepthPixels>),
 }
 
 /// What is asked of the worker.
@@ -188,6 +191,9 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
         2 => decode(&file.bytes)
             .map(|photo| write_pixels(&thumbnail(&photo.pixels, THUMBNAIL_SIDE_PX)))
             .map_err(|error| error.to_string()),
+        3 => decode_depth(&file.bytes)
+            .map(|depth| write_depth(&file, &depth))
+            .map_err(|error| error.to_string()),
         _ => read_mesh_with(&file, &companions)
             .map(|(asset, warnings)| write_mesh(&asset, &warnings))
             .map_err(|error| error.to_string()),
@@ -204,6 +210,7 @@ fn read_reply(
     let done = match reader.byte() {
         Some(1) if kind == JobKind::Photo => read_photo_reply(file, &mut reader),
         Some(1) if kind == JobKind::Thumbnail => read_pixels(&mut reader).map(Done::Thumbnail),
+        Some(1) if kind == JobKind::DepthMap => read_depth_reply(file, &mut reader),
         Some(1) => read_mesh_reply(file, companions, &mut reader),
         _ => {
             let message = reader.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned());
@@ -250,6 +257,26 @@ fn read_photo_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
         exif_focal_px,
     };
     Some(Done::Photo(Arc::new(asset), Arc::new(pixels)))
+}
+
+fn write_depth(file: &NamedFile, depth: &DepthPixels) -> Vec<u8> {
+    let mut writer = Writer::default();
+    writer.bytes(Sha256::of(&file.bytes).to_string().as_bytes());
+    writer.number(f64::from(depth.width));
+    writer.number(f64::from(depth.height));
+    writer.items(&depth.raw);
+    writer.finish()
+}
+
+fn read_depth_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
+    let sha256 = read_hash(reader)?;
+    let (width, height) = (reader.number()? as u32, reader.number()? as u32);
+    let raw: Vec<u16> = reader.items()?;
+    let depth = DepthPixels { width, height, raw };
+    let is_whole = depth.raw.len() as u64 == u64::from(width) * u64::from(height);
+    let (file_name, bytes) = (file.name.clone(), file.bytes.clone());
+    let asset = PhotoAsset { file_name, sha256, bytes, width, height, exif_focal_px: None };
+    is_whole.then(|| Done::DepthMap(Arc::new(asset), Arc::new(depth)))
 }
 
 fn write_mesh(asset: &MeshAsset, warnings: &[String]) -> Vec<u8> {
@@ -369,7 +396,7 @@ mod tests {
     #[test]
     fn errors_come_back_in_words() {
         let error = run(JobKind::Photo, &file("a.png", b"nothing"), &[]).err().unwrap();
-        assert!(error.contains("PNG or JPEG"), "{error}");
+        assert!(error.contains("PNG, JPEG"), "{error}");
         assert!(run_job(&[1, 2, 3]).len() > 1);
     }
 }

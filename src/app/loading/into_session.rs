@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Arrival, Load, Origin};
+use super::{Arrival, ImagesAs, Load, Origin};
 use crate::app::PinPose;
 use crate::platform::{self, FileBytes, Loaded, PageAnswer};
 use crate::scene::PhotoAsset;
@@ -42,6 +42,9 @@ impl PinPose {
         for (sha256, pixels) in self.loading.take_thumbnails() {
             self.ui_state.thumbnails.insert(&self.ctx, sha256, pixels.as_ref());
         }
+        for (sha256, depth) in self.loading.take_depth_maps() {
+            self.depth_maps.insert(sha256, depth);
+        }
         for mut load in complete {
             if load.is_of(Origin::Workspace) && !self.make_room(&mut load) {
                 self.loading.loads.push(load);
@@ -49,6 +52,7 @@ impl PinPose {
             }
             load.sort();
             let masks = self.take_masks(&mut load);
+            let depth = self.take_depth(&mut load);
             let restored = load.is_of(Origin::Storage);
             let command = match load.opening.take() {
                 Some((document, _)) => Command::Open(Box::new(Opening {
@@ -64,6 +68,9 @@ impl PinPose {
             }
             if !masks.is_empty() {
                 self.apply(Command::ImportMasks(masks));
+            }
+            if let Some(depth) = depth {
+                self.apply(Command::ImportDepth(depth));
             }
             if restored {
                 // What could not be read stays in storage: a change goes into a scene of its own.
@@ -100,15 +107,39 @@ impl PinPose {
     /// going to be shown. The others are photos.
     fn take_masks(&self, load: &mut Load) -> Vec<Arc<PhotoAsset>> {
         let likely = std::mem::take(&mut load.likely_masks);
-        if load.as_masks {
+        if load.images_as == ImagesAs::Masks {
             return likely;
         }
-        let first_new = load.batch.photos.first().map(|photo| (photo.width, photo.height));
-        let shown = self.session.photo().map(|photo| (photo.asset.width, photo.asset.height));
-        let size = first_new.or(shown);
+        let size = self.size_to_be_shown(load);
         let (masks, photos) = likely.into_iter().partition(|image| size == Some((image.width, image.height)));
         load.batch.photos.extend::<Vec<_>>(photos);
         masks
+    }
+
+    /// The image of a load that is a depth map: the one that was picked as such, else the first of the size of the photo
+    /// that is going to be shown. The others are photos.
+    fn take_depth(&self, load: &mut Load) -> Option<Arc<PhotoAsset>> {
+        let size = self.size_to_be_shown(load);
+        let mut likely = std::mem::take(&mut load.likely_depths).into_iter();
+        if load.images_as == ImagesAs::DepthMap {
+            return likely.next();
+        }
+        let fits = |image: &Arc<PhotoAsset>| size == Some((image.width, image.height));
+        let (mut fitting, photos): (Vec<_>, Vec<_>) = likely.partition(fits);
+        load.batch.photos.extend(photos);
+        if fitting.is_empty() {
+            return None;
+        }
+        let depth = fitting.remove(0);
+        load.batch.photos.extend(fitting);
+        Some(depth)
+    }
+
+    /// Of the photo that is shown after a load.
+    fn size_to_be_shown(&self, load: &Load) -> Option<(u32, u32)> {
+        let first_new = load.batch.photos.first().map(|photo| (photo.width, photo.height));
+        let shown = self.session.photo().map(|photo| (photo.asset.width, photo.asset.height));
+        first_new.or(shown)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Between the live scene and the document, both ways.
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use super::{
-    CameraOriginEntry, Conventions, Document, MaskEntry, ObjectEntry, PhotoEntry, PoseEntry, ReferenceEntry,
-    ReferencePoseEntry, SourceEntry, StateEntry, VERSION, ViewSettings,
+    CameraOriginEntry, ContinuousSymmetryEntry, Conventions, DepthEntry, Document, MaskEntry, ObjectEntry,
+    PhotoEntry, PoseEntry, ReferenceEntry, ReferencePoseEntry, SourceEntry, StateEntry, SymmetriesEntry,
+    VERSION, ViewSettings,
 };
 use crate::formats::incoming::{IncomingReference, ObjectLook, PhotoLook};
 use crate::formats::{
@@ -12,7 +13,8 @@ use crate::formats::{
 };
 use crate::math::{Distortion, Intrinsics, Pose};
 use crate::scene::{
-    Annotation, AnnotationState, CameraOrigin, Mask, MeshFrame, Object, Photo, PoseSource, Rgb, Scene, Sha256,
+    Annotation, AnnotationState, CameraOrigin, ContinuousSymmetry, DepthMap, Mask, MeshFrame, Object, Photo,
+    PoseSource, Rgb, Scene, Sha256, Symmetries,
 };
 
 /// Which poses a document holds.
@@ -78,6 +80,20 @@ impl Document {
             entry.masks.iter().filter_map(read).collect()
         };
         self.photos.iter().enumerate().flat_map(of_photo).collect()
+    }
+
+    /// The depth maps, to be found again like the masks.
+    pub fn depth_maps(&self) -> impl Iterator<Item = SavedDepth> {
+        self.photos.iter().enumerate().filter_map(|(photo, entry)| {
+            let depth = entry.depth.as_ref()?;
+            let is_scale = depth.mm_per_unit.is_finite() && depth.mm_per_unit > 0.0;
+            Some(SavedDepth {
+                photo,
+                sha256: depth.sha256.parse().ok()?,
+                mm_per_unit: is_scale.then_some(depth.mm_per_unit)?,
+                occludes: depth.occludes,
+            })
+        })
     }
 
     /// The position of the view's photo and object among the document's.
@@ -179,6 +195,15 @@ pub struct SavedMask {
     pub visible: bool,
 }
 
+/// A depth map of a document; its photo by its position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SavedDepth {
+    pub photo: usize,
+    pub sha256: Sha256,
+    pub mm_per_unit: f64,
+    pub occludes: bool,
+}
+
 fn photo_entry(scene: &Scene, photo: &Photo, keep: Keep) -> PhotoEntry {
     let kept = |annotation: &Annotation| {
         keep == Keep::Everything
@@ -197,12 +222,22 @@ fn photo_entry(scene: &Scene, photo: &Photo, keep: Keep) -> PhotoEntry {
         visible: photo.visible,
         opacity: photo.opacity,
         locked: photo.locked,
+        depth: photo.depth.as_ref().map(depth_entry),
         masks: scene.masks_of(photo.id).map(mask_entry).collect(),
         poses: scene
             .objects_in(photo.id)
             .filter(|(_, annotation)| kept(annotation))
             .map(|(object, annotation)| pose_entry(object, annotation))
             .collect(),
+    }
+}
+
+fn depth_entry(depth: &DepthMap) -> DepthEntry {
+    DepthEntry {
+        file: depth.asset.file_name.clone(),
+        sha256: depth.asset.sha256.to_string(),
+        mm_per_unit: depth.mm_per_unit,
+        occludes: depth.occludes,
     }
 }
 
@@ -247,7 +282,45 @@ fn object_entry(object: &Object) -> ObjectEntry {
         visible: object.visible,
         locked: object.locked,
         link: object.link,
+        symmetries: symmetries_entry(&object.symmetries),
     }
+}
+
+fn symmetries_entry(symmetries: &Symmetries) -> SymmetriesEntry {
+    let continuous = symmetries.continuous.iter().map(|symmetry| ContinuousSymmetryEntry {
+        axis: symmetry.axis.to_array(),
+        offset_mm: symmetry.offset_mm.to_array(),
+    });
+    SymmetriesEntry {
+        discrete: symmetries.discrete.iter().map(Pose::to_rows).collect(),
+        continuous: continuous.collect(),
+    }
+}
+
+fn read_symmetries(entry: &SymmetriesEntry, place: &str) -> Result<Symmetries, FormatError> {
+    let discrete = entry.discrete.iter().enumerate().map(|(index, rows)| {
+        let pose = Pose::from_rows(rows);
+        pose.map(|(pose, _)| pose)
+            .map_err(|error| FormatError::pose(format!("{place}.symmetries.discrete[{index}]"), error))
+    });
+    let continuous = entry.continuous.iter().enumerate().map(|(index, symmetry)| {
+        let axis = DVec3::from_array(symmetry.axis);
+        let offset_mm = DVec3::from_array(symmetry.offset_mm);
+        // A unit axis is taken as it is, bit for bit.
+        let axis =
+            if (axis.length_squared() - 1.0).abs() < 1e-12 { Some(axis) } else { axis.try_normalize() };
+        let symmetry = axis.filter(|_| offset_mm.is_finite());
+        symmetry.map(|axis| ContinuousSymmetry { axis, offset_mm }).ok_or_else(|| {
+            FormatError::at(
+                format!("{place}.symmetries.continuous[{index}]"),
+                "an axis of some length and a finite offset_mm expected",
+            )
+        })
+    });
+    Ok(Symmetries {
+        discrete: discrete.collect::<Result<_, _>>()?,
+        continuous: continuous.collect::<Result<_, _>>()?,
+    })
 }
 
 fn write_color(Rgb([red, green, blue]): Rgb) -> String {
@@ -272,6 +345,7 @@ impl ObjectEntry {
         Ok(IncomingObject {
             key: content_key(&self.mesh_sha256, &self.mesh_file, place)?,
             mesh_from_file: Some(mesh_from_file),
+            symmetries: Some(read_symmetries(&self.symmetries, place)?),
             look: Some(ObjectLook {
                 name: self.name.clone(),
                 color: read_color(&self.color, place)?,

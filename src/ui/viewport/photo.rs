@@ -29,6 +29,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         look: session.look(),
         pixels_per_point,
         masks: around.masks.clone(),
+        depth: around.depth.clone(),
         ..Subject::new(session.scene(), photo.id, around.pixels.clone())
     };
     let mut picture = picture_of(&subject)?;
