@@ -48,7 +48,9 @@ impl PinPose {
 
     /// Is a depth map on its way that this photo's picture needs?
     pub(super) fn waits_for_depth(&mut self, photo: PhotoId) -> bool {
-        self.occluding_depth(photo).is_some() && self.depth_of(photo).is_none() && !self.loading.is_worker_idle()
+        self.occluding_depth(photo).is_some()
+            && self.depth_of(photo).is_none()
+            && !self.loading.is_worker_idle()
     }
 
     fn occluding_depth(&self, photo: PhotoId) -> Option<&DepthMap> {

@@ -416,7 +416,9 @@ impl Load {
         match done {
             Ok(Done::Photo(asset, pixels)) => {
                 let is_named_mask = asset.file_name.to_lowercase().contains("mask");
-                if self.images_as == ImagesAs::Masks || (is_named_mask && self.opening.is_none() && is_grey(&pixels)) {
+                if self.images_as == ImagesAs::Masks
+                    || (is_named_mask && self.opening.is_none() && is_grey(&pixels))
+                {
                     self.likely_masks.push(asset);
                 } else {
                     self.batch.photos.push(asset);

@@ -5,12 +5,12 @@
 
 mod answers;
 mod autosave;
+mod depth_maps;
 mod effects;
 mod events;
 mod input;
 mod jobs;
 mod loading;
-mod depth_maps;
 mod mask_layer;
 mod performance;
 mod photo_cache;

@@ -1,10 +1,10 @@
 //! Two sets of poses of one scene, pose by pose.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Model, PoseErrors, VSD_TAUS, View};
 use crate::math::Pose;
-use crate::scene::{AnnotationState, Object, ObjectId, PhotoId, Scene};
+use crate::scene::{AnnotationState, DepthInMm, Object, ObjectId, Photo, PhotoId, Scene};
 
 /// `camera_from_object` for objects in photos.
 pub type PoseSet = BTreeMap<(PhotoId, ObjectId), Pose>;
@@ -26,6 +26,8 @@ pub struct Comparison {
     pub missing: Vec<(PhotoId, ObjectId)>,
     /// In the estimates alone.
     pub without_truth: Vec<(PhotoId, ObjectId)>,
+    /// Photos whose depth maps play no part, for they cannot be read or are of another size.
+    pub unused_depth: BTreeSet<PhotoId>,
 }
 
 /// The parts of all true poses that were estimated well enough; what is missing was not.
@@ -52,13 +54,18 @@ pub fn compare(scene: &Scene, truth: &PoseSet, estimates: &PoseSet) -> Compariso
     let mut comparison = Comparison::default();
     let models: BTreeMap<ObjectId, Model<'_>> =
         scene.objects.iter().filter_map(|object| Some((object.id, model_of(object)?))).collect();
+    let mut depths = LastDepth::default();
     for (&(photo, object), reference) in truth {
         let Some(estimate) = estimates.get(&(photo, object)) else {
             comparison.missing.push((photo, object));
             continue;
         };
         let (Some(found), Some(model)) = (scene.photo(photo), models.get(&object)) else { continue };
-        let view = View { camera: &found.camera, depth_mm: None };
+        let depth_mm = depths.of(found);
+        if depth_mm.is_none() && found.depth.is_some() {
+            comparison.unused_depth.insert(photo);
+        }
+        let view = View { camera: &found.camera, depth_mm };
         let errors = model.errors(estimate, reference, view);
         comparison.poses.push(ComparedPose { photo, object, diameter_mm: model.diameter_mm(), errors });
     }
@@ -67,7 +74,26 @@ pub fn compare(scene: &Scene, truth: &PoseSet, estimates: &PoseSet) -> Compariso
 }
 
 fn model_of(object: &Object) -> Option<Model<'_>> {
-    Model::new(&object.mesh.mesh, Vec::new())
+    Model::new(&object.mesh.mesh, object.symmetries.expanded())
+}
+
+/// The depth map of the photo that was asked for last: poses come photo by photo, and maps are large.
+#[derive(Default)]
+struct LastDepth {
+    photo: Option<PhotoId>,
+    mm: Option<Vec<f32>>,
+}
+
+impl LastDepth {
+    fn of(&mut self, photo: &Photo) -> Option<&[f32]> {
+        if self.photo != Some(photo.id) {
+            let depth = photo.depth.as_ref().and_then(|depth| depth.in_mm().ok());
+            let fits =
+                |depth: &DepthInMm| (depth.width, depth.height) == (photo.camera.width, photo.camera.height);
+            (self.photo, self.mm) = (Some(photo.id), depth.filter(fits).map(|depth| depth.mm));
+        }
+        self.mm.as_deref()
+    }
 }
 
 impl Comparison {

@@ -43,6 +43,12 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
     if comparison.poses.is_empty() {
         return Err(Failure::Input(vec!["no pose has its photo and object in the truth".to_owned()]));
     }
+    for photo in comparison.unused_depth.iter().filter_map(|id| scene.photo(*id)) {
+        eprintln!(
+            "pinpose: {}: its depth map is not used: it cannot be read or has another size",
+            photo.name
+        );
+    }
     match style {
         Style::Text => print!("{}", report::text(scene, &comparison)),
         Style::Json => println!("{}", report::json(scene, &comparison)),

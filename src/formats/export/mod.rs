@@ -22,7 +22,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::{Document, NamedFile, ViewSettings};
-use crate::raster::{Silhouette, silhouettes};
+use crate::raster::{MeasuredDepth, Silhouette, silhouettes};
 use crate::scene::Scene;
 use pictures::PhotoPictures;
 use plan::{Plan, raster_items};
@@ -110,7 +110,10 @@ impl ExportJob {
         let photo = self.plan.photos.get(photo_index).and_then(|planned| self.plan.photo(planned));
         let found: Arc<[Silhouette]> = photo.map_or_else(Arc::default, |photo| {
             let items = raster_items(&self.plan.placed(photo));
-            silhouettes(&photo.camera, &items, self.plan.depth(photo)).into()
+            let depth_mm = self.plan.depth_mm(photo);
+            let delta_mm = self.plan.options.visibility_delta_mm;
+            let depth = depth_mm.as_deref().map(|mm| MeasuredDepth { mm, delta_mm });
+            silhouettes(&photo.camera, &items, depth).into()
         });
         self.silhouettes = Some((photo_index, found.clone()));
         found

@@ -6,7 +6,7 @@ use super::names::{numbers_of, unique_names};
 use super::{ExportOptions, PhotoChoice};
 use crate::formats::Keep;
 use crate::math::Pose;
-use crate::raster::{MeasuredDepth, RasterItem};
+use crate::raster::RasterItem;
 use crate::scene::{Annotation, AnnotationState, Object, Photo, Scene, file_stem};
 
 /// A scene, cut down to what is exported.
@@ -112,22 +112,11 @@ impl Plan {
         model.map_or(0, |model| model.id)
     }
 
-    /// Of the depth picture in the BOP dataset: its values times this are millimetres.
-    pub fn depth_scale(&self, photo: &Photo) -> f64 {
-        let _ = photo;
-        1.0
-    }
-
-    /// The depth picture of the BOP dataset.
-    pub fn depth_png(&self, photo: &Photo) -> Option<Vec<u8>> {
-        let _ = photo;
-        None
-    }
-
-    /// The photo's depth map, where it has one.
-    pub fn depth<'a>(&self, photo: &'a Photo) -> Option<MeasuredDepth<'a>> {
-        let _ = photo;
-        None
+    /// The photo's depth map in millimetres; `None` where it has none of its size, or none that can be read.
+    pub fn depth_mm(&self, photo: &Photo) -> Option<Vec<f32>> {
+        let depth = photo.depth.as_ref()?.in_mm().ok()?;
+        let fits = (depth.width, depth.height) == (photo.camera.width, photo.camera.height);
+        fits.then_some(depth.mm)
     }
 }
 
@@ -166,5 +155,5 @@ fn models(scene: &Scene) -> (Vec<ModelPlan>, Vec<usize>) {
 }
 
 fn is_same_model(a: &Object, b: &Object) -> bool {
-    a.mesh_from_file == b.mesh_from_file
+    a.mesh_from_file == b.mesh_from_file && a.symmetries == b.symmetries
 }

@@ -193,7 +193,8 @@ impl ExportJob {
     fn bop_depth(&self, photo: usize) -> Made {
         let (planned, photo) = planned_photo(&self.plan, photo)?;
         let path = bop::image_path(&self.plan, "depth", planned.image_id, "png");
-        let bytes = self.plan.depth_png(photo).ok_or_else(|| format!("{path}: {GONE}"))?;
+        let depth = photo.depth.as_ref().ok_or(GONE)?;
+        let bytes = bop::depth_png(depth).map_err(|reason| format!("{path}: {reason}"))?;
         Ok((path, bytes))
     }
 

@@ -9,7 +9,8 @@ mod models;
 mod records;
 
 use super::plan::Plan;
-use crate::scene::Photo;
+use crate::photo::{decode_depth, png_gray16};
+use crate::scene::{DepthMap, Photo};
 
 pub(super) use models::{camera_json, model_file, models_info};
 pub(super) use records::Records;
@@ -41,7 +42,7 @@ pub(super) fn steps(plan: &Plan) -> Vec<BopStep> {
     for (index, planned) in plan.photos.iter().enumerate() {
         steps.push(BopStep::Photo(index));
         let Some(photo) = plan.photo(planned) else { continue };
-        if plan.depth(photo).is_some() {
+        if photo.depth.is_some() {
             steps.push(BopStep::Depth(index));
         }
         let placed = plan.placed(photo).len();
@@ -74,6 +75,22 @@ pub(super) fn warnings(plan: &Plan) -> Vec<String> {
         );
     }
     warnings
+}
+
+/// Of a photo's depth picture: its values times this are millimetres. BOP's 1 where there is no picture.
+fn depth_scale(photo: &Photo) -> f64 {
+    photo.depth.as_ref().map_or(1.0, |depth| depth.mm_per_unit)
+}
+
+/// The depth picture as it came where it is a PNG, else the same values as one.
+pub(super) fn depth_png(depth: &DepthMap) -> Result<Vec<u8>, String> {
+    const PNG_MAGIC: &[u8] = b"\x89PNG";
+    let pixels = decode_depth(&depth.asset.bytes).map_err(|error| error.to_string())?;
+    if depth.asset.bytes.starts_with(PNG_MAGIC) {
+        return Ok(depth.asset.bytes.to_vec());
+    }
+    png_gray16(pixels.width, pixels.height, pixels.raw)
+        .ok_or_else(|| "the picture cannot be encoded".to_owned())
 }
 
 pub(super) fn scene_path(plan: &Plan, file: &str) -> String {

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::super::plan::{ModelPlan, Plan};
-use crate::math::Bounds;
+use super::depth_scale;
+use crate::math::{Bounds, Pose};
 use crate::mesh::{PointTree, write_ply};
 
 #[derive(Serialize)]
@@ -60,9 +61,23 @@ fn model_info(plan: &Plan, model: &ModelPlan) -> Option<ModelInfo> {
         size_x: size.x,
         size_y: size.y,
         size_z: size.z,
-        symmetries_discrete: Vec::new(),
-        symmetries_continuous: Vec::new(),
+        symmetries_discrete: object.symmetries.discrete.iter().map(flat).collect(),
+        symmetries_continuous: object
+            .symmetries
+            .continuous
+            .iter()
+            .map(|symmetry| ContinuousSymmetry {
+                axis: symmetry.axis.to_array(),
+                offset: symmetry.offset_mm.to_array(),
+            })
+            .collect(),
     })
+}
+
+/// The 4×4 row by row.
+fn flat(pose: &Pose) -> [f64; 16] {
+    let rows = pose.to_rows();
+    std::array::from_fn(|at| rows[at / 4][at % 4])
 }
 
 /// The model's mesh in the `object` frame, in millimetres.
@@ -83,7 +98,7 @@ pub(in super::super) fn camera_json(plan: &Plan) -> Option<String> {
         fy: camera.fy,
         width: camera.width,
         height: camera.height,
-        depth_scale: plan.depth_scale(photo),
+        depth_scale: depth_scale(photo),
     };
     serde_json::to_string_pretty(&camera).ok()
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::super::plan::{PhotoPlan, Plan};
 use super::coco::{Category, Coco};
+use super::depth_scale;
 use super::frames::{CameraEntry, TruthEntry, TruthInfo};
 use crate::raster::Silhouette;
 use crate::scene::Photo;
@@ -58,7 +59,7 @@ impl Records {
     ) {
         let id = planned.image_id;
         let camera = &photo.camera;
-        self.cameras.insert(id, CameraEntry::new(camera, plan.depth_scale(photo)));
+        self.cameras.insert(id, CameraEntry::new(camera, depth_scale(photo)));
         self.coco.add_image(id, file_name, camera.width, camera.height);
         let placed = plan.placed(photo);
         let truth = |index: usize, pose| TruthEntry::new(plan.model_id(index), pose);
