@@ -14,7 +14,11 @@ PinPose, a 6D object pose annotator
 
 pinpose                              open the window
 pinpose inspect FILE… [--json]       say what files are and what is in them
-pinpose convert IN… OUT              read files or folders, write poses (.json) or a workspace (.zip)
+pinpose convert IN… OUT              read files or folders, write poses (.json, .csv) or a workspace (.zip)
+        [--to json,poses,npy,csv,meshes,bop,masks,visible_masks,depth,nocs,boxes]
+        with it OUT is a folder, or a .zip of what is asked for
+        [--axes opencv|opengl] [--unit mm|m] [--direction camera_from_object|object_from_camera]
+        [--photo NAME]… [--all-poses]   of poses, npy and csv; some photos alone; untouched poses too
 pinpose render IN… --out FOLDER      draw each photo with its objects
         [--kind overlay|silhouette|mask|visible_mask|depth] [--json]
         one PNG per photo, for masks and silhouettes one per object

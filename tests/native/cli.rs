@@ -64,6 +64,42 @@ fn convert_goes_through_a_workspace_without_loss() {
 }
 
 #[test]
+fn convert_writes_folders_archives_and_single_files() {
+    let folder = small_folder("convert-to");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let inputs = ["photo.png", "box.obj", "truth.txt"].map(path);
+    let run = |arguments: &[&str]| {
+        let inputs = inputs.iter().map(String::as_str);
+        let output = pinpose(
+            &["convert"].into_iter().chain(inputs).chain(arguments.iter().copied()).collect::<Vec<_>>(),
+        );
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    run(&[&path("out"), "--to", "bop,npy", "--axes", "opengl", "--unit", "m", "--photo", "photo"]);
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let truth: Value = serde_json::from_str(&read("out/bop/test/000001/scene_gt.json")).unwrap();
+    assert_eq!(truth["0"][0]["cam_t_m2c"], serde_json::json!([5.0, 6.0, 700.0]), "BOP has one convention");
+    assert!(folder.join("out/npy/photo-box-camera_from_object_opengl_m.npy").is_file());
+    let poses: Value = serde_json::from_str(&read("out/poses.json")).unwrap();
+    assert_eq!(poses["photos"][0]["poses"][0]["matrix"][2][3], -0.7);
+
+    run(&[&path("out.zip"), "--to", "csv,meshes"]);
+    let archive = zip::ZipArchive::new(std::fs::File::open(folder.join("out.zip")).unwrap()).unwrap();
+    let names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
+    assert!(
+        names.contains(&"poses.csv".to_owned()) && names.contains(&"meshes/box.ply".to_owned()),
+        "{names:?}"
+    );
+    run(&[&path("poses.csv")]);
+    assert_eq!(read("poses.csv").lines().count(), 2);
+
+    let status = |arguments: &[&str]| pinpose(&[&["convert", &inputs[0]], arguments].concat()).status.code();
+    assert_eq!(status(&[&path("out"), "--to", "docx"]), Some(2));
+    assert_eq!(status(&[&path("out"), "--to", "bop", "--axes", "up"]), Some(2));
+    assert_eq!(status(&[&path("out"), "--to", "bop", "--photo", "nowhere"]), Some(1));
+}
+
+#[test]
 fn render_draws_masks_and_overlays_of_linemod() {
     let (Some(linemod), Some(_)) = (data_folder("linemod10"), crate::support::renderer()) else { return };
     let out = empty_folder("render");
