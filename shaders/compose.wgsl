@@ -59,6 +59,7 @@ fn photo_uv(target_position: vec2<f32>) -> vec2<f32> {
     return (pixel + 0.5) / frame.photo.xy;
 }
 
+// With changes, without masks.
 fn photo_color(target_position: vec2<f32>) -> vec3<f32> {
     let uv = photo_uv(target_position);
     let photo = adjusted(textureSampleLevel(photo_texture, photo_sampler, uv, frame.photo.z).rgb);
@@ -176,6 +177,10 @@ fn fs_difference(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let uv = photo_uv(target_position);
     if (all(uv >= vec2<f32>(0.0)) && all(uv < vec2<f32>(1.0))) {
         photo = photo_color(target_position);
+        if (frame.more.x > 0.5) {
+            let mask = textureSampleLevel(mask_texture, photo_sampler, uv, frame.photo.z);
+            photo = mix(photo, mask.rgb, mask.a);
+        }
     }
     return vec4<f32>(abs(photo - own) * alpha, alpha);
 }

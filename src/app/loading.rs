@@ -65,7 +65,7 @@ pub struct Arrival {
 }
 
 impl Arrival {
-    fn of_files(files: Vec<Result<FileBytes, String>>) -> Self {
+    pub fn of_files(files: Vec<Result<FileBytes, String>>) -> Self {
         Self { files, poses_as: None, images_as: ImagesAs::Photos, reply: None }
     }
 }

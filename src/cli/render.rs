@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::{Failure, Outcome, open};
-use crate::photo::{decode, png_rgba};
+use crate::photo::{decode, decode_depth, png_rgba};
 use crate::render::{ExportKind, Layer, Renderer, export_picture, raster_png, silhouette_png};
 use crate::scene::{ObjectId, Photo, Scene, file_stem};
 
@@ -99,9 +99,11 @@ fn draw(
 ) -> Result<Option<Vec<u8>>, String> {
     let decoded =
         decode(&photo.asset.bytes).map_err(|error| format!("{}: {error}", photo.asset.file_name))?;
-    let Some(picture) = export_picture(scene, photo.id, Some(Arc::new(decoded.pixels)), object) else {
-        return Ok(None);
-    };
+    let occluding = photo.depth.as_ref().filter(|depth| depth.occludes);
+    let depth = occluding.map(|depth| decode_depth(&depth.asset.bytes).map(Arc::new)).transpose();
+    let depth = depth.map_err(|error| format!("the depth map of {}: {error}", photo.name))?;
+    let pixels = Some(Arc::new(decoded.pixels));
+    let Some(picture) = export_picture(scene, photo.id, pixels, depth, object) else { return Ok(None) };
     let layer = if kind == ExportKind::Silhouette { Layer::Ids } else { Layer::Picture };
     let pending = renderer.draw_and_read(&picture, [photo.camera.width, photo.camera.height], layer);
     let pixels = pending.wait(renderer.gpu()).map_err(|error| error.to_string())?;

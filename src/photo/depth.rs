@@ -37,6 +37,12 @@ pub fn decode_depth(bytes: &[u8]) -> Result<DepthPixels, PhotoError> {
     }
 }
 
+/// Is this most likely a depth map? Nearly nothing else is a grey PNG of 16 bits.
+pub fn is_depth_like(bytes: &[u8]) -> bool {
+    const GREY_OF_16_BITS: [u8; 2] = [16, 0];
+    bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.get(24..26) == Some(&GREY_OF_16_BITS)
+}
+
 fn color_in_words(color: ExtendedColorType) -> String {
     let (channels, bits) = (color.channel_count(), color.bits_per_pixel());
     let bits_each = bits / u16::from(channels.max(1));

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pinpose::formats::{Keep, PosesAs, read_photo};
+use pinpose::formats::{Keep, NamedFile, PosesAs, read_photo};
 use pinpose::math::{Intrinsics, Pose};
+use pinpose::photo::png_gray16;
 use pinpose::scene::{AnnotationState, CameraOrigin, MeshFrame, ObjectId, PhotoId, PoseSource};
 use pinpose::session::{
     Command, CommandError, CommandId, Effect, MaskChange, Nudge, ObjectChange, Opening, PhotoChange, Session,
@@ -263,6 +264,43 @@ fn masks_belong_to_their_photo_and_survive_saving() {
     assert!(session.scene().masks.is_empty());
     press(&mut session, CommandId::Undo);
     assert_eq!(session.scene().masks.len(), 1);
+}
+
+#[test]
+fn a_depth_map_belongs_to_its_photo_and_survives_saving() {
+    let mut session = small_session();
+    let photo = target(&session).0;
+    let image = |name: &str, width| Arc::new(read_photo(&flat_photo(name, width, 480)).unwrap().0);
+    let refused = session.apply(Command::ImportDepth(image("small.png", 600)), NOW_MS).unwrap_err();
+    assert!(refused.to_string().contains("640 × 480 pixels, expected; this has 600"), "{refused}");
+    let bytes = png_gray16(640, 480, vec![8000; 640 * 480]).unwrap();
+    let depth = NamedFile { name: "depth.png".to_owned(), bytes: Arc::from(bytes) };
+    let depth = Arc::new(read_photo(&depth).unwrap().0);
+    run(&mut session, Command::ImportDepth(depth.clone()));
+    for wrong in [0.0, -1.0, f64::NAN] {
+        let command = Command::EditPhoto(photo, PhotoChange::DepthScale(wrong));
+        assert!(session.apply(command, NOW_MS).is_err(), "{wrong}");
+    }
+    run(&mut session, Command::EditPhoto(photo, PhotoChange::DepthScale(0.1)));
+    run(&mut session, Command::EditPhoto(photo, PhotoChange::DepthOccludes(false)));
+    assert_eq!(session.scene().files().len(), 3, "photo, depth map and mesh");
+
+    let document = session.document(Keep::Everything);
+    let images = vec![session.scene().photos[0].asset.clone(), depth.clone()];
+    let meshes = session.scene().objects.iter().map(|object| object.mesh.clone()).collect();
+    let mut reopened = Session::default();
+    run(
+        &mut reopened,
+        Command::Open(Box::new(Opening { document, photos: images, meshes, restored: false })),
+    );
+    let found = reopened.scene().photos[0].depth.clone().unwrap();
+    assert_eq!((found.asset, found.mm_per_unit, found.occludes), (depth, 0.1, false));
+    assert_eq!(reopened.scene().photos.len(), 1, "a depth map is no photo");
+
+    run(&mut session, Command::EditPhoto(photo, PhotoChange::WithoutDepth));
+    assert!(session.scene().photos[0].depth.is_none());
+    press(&mut session, CommandId::Undo);
+    assert!(session.scene().photos[0].depth.is_some());
 }
 
 #[test]

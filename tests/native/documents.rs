@@ -102,6 +102,39 @@ fn exports_are_as_the_schema_says() {
 }
 
 #[test]
+fn symmetries_come_back_bit_for_bit() {
+    let session = small_session();
+    let mut value: serde_json::Value =
+        serde_json::from_str(&write_document(&session.document(Keep::Everything))).unwrap();
+    let half_turn =
+        [[-1.0, 0.0, 0.0, 0.5], [0.0, -1.0, 0.0, 0.25], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    value["objects"][0]["symmetries"] = serde_json::json!({
+        "discrete": [half_turn],
+        "continuous": [{ "axis": [0.6, 0.0, 0.8], "offset_mm": [1.1, 2.2, 3.3] }],
+    });
+    let open = |value: &serde_json::Value| {
+        let document = read_document(value.to_string().as_bytes()).unwrap();
+        let photos = session.scene().photos.iter().map(|photo| photo.asset.clone()).collect();
+        let meshes = session.scene().objects.iter().map(|object| object.mesh.clone()).collect();
+        let mut opened = Session::default();
+        let opening = Opening { document, photos, meshes, restored: true };
+        let effects = opened.apply(Command::Open(Box::new(opening)), NOW_MS).unwrap();
+        (opened, effects)
+    };
+    let (opened, _) = open(&value);
+    let symmetries = &opened.scene().objects[0].symmetries;
+    assert_eq!((symmetries.discrete.len(), symmetries.continuous.len()), (1, 1));
+    let again: serde_json::Value =
+        serde_json::from_str(&write_document(&opened.document(Keep::Everything))).unwrap();
+    assert_eq!(again["objects"][0]["symmetries"], value["objects"][0]["symmetries"]);
+
+    value["objects"][0]["symmetries"]["continuous"][0]["axis"] = serde_json::json!([0.0, 0.0, 0.0]);
+    let (_, effects) = open(&value);
+    let said = format!("{effects:?}");
+    assert!(said.contains("symmetries.continuous[0]"), "{said}");
+}
+
+#[test]
 fn an_untouched_pose_is_not_exported_as_an_annotation() {
     let session = small_session();
     assert_eq!(session.document(Keep::Annotated).pose_count(), 0);

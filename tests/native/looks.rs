@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec2, Vec3};
 use pinpose::math::{Distortion, ImageRect, Intrinsics, Pose};
 use pinpose::mesh::{Bvh, Material, Mesh, MeshData, Paint};
-use pinpose::photo::Pixels;
+use pinpose::photo::{DepthPixels, Pixels};
 use pinpose::render::{
-    FreeView, Item, Layer, Line3, PhotoLayer, PhotoPlane, Picture, Renderer, Subject, Surroundings, ViewSlot,
-    scene_picture_of,
+    FreeView, Item, Layer, Line3, Occluder, PhotoLayer, PhotoPlane, Picture, PixelsPending, Renderer,
+    Subject, Surroundings, ViewSlot, scene_picture_of,
 };
 use pinpose::scene::{Layers, Look, MeshAsset, OverlayMode, PhotoAdjustment, Rgb, Sha256};
 
@@ -330,7 +330,8 @@ fn x_ray_shows_what_is_behind() {
     }
 }
 
-/// A repaint of either view draws nothing where nothing changed, and an export disturbs neither.
+/// A repaint of either view draws nothing where nothing changed, but once for what lies below the meshes, which is kept
+/// then; and an export disturbs neither.
 #[test]
 fn views_keep_their_pictures() {
     let Some(mut renderer) = renderer() else { return };
@@ -347,8 +348,10 @@ fn views_keep_their_pictures() {
     assert!(cost(&mut renderer, ViewSlot::Photo, &first).0 > 0);
     assert!(cost(&mut renderer, ViewSlot::Scene, &second).0 > 0);
     draw(&mut renderer, &turned_box_picture(OverlayMode::Edges));
-    assert_eq!(cost(&mut renderer, ViewSlot::Photo, &first), (0, 0));
-    assert_eq!(cost(&mut renderer, ViewSlot::Scene, &second), (0, 0));
+    for (slot, picture) in [(ViewSlot::Photo, &first), (ViewSlot::Scene, &second)] {
+        assert_eq!(cost(&mut renderer, slot, picture), (1, 0));
+        assert_eq!(cost(&mut renderer, slot, picture), (0, 0));
+    }
 }
 
 /// What a drag step uploads and how often it draws does not depend on how fine the mesh is.
@@ -516,6 +519,100 @@ fn the_scene_picture_has_the_photo_its_camera_and_axes() {
     let corner = photo.camera.unproject(DVec2::splat(-0.5)) * 600.0;
     assert_eq!((lines[0].from, lines[0].to), (DVec3::ZERO, corner));
     assert_eq!((picture.camera, picture.eye_from_camera), (view.eye, view.eye_from_camera));
+}
+
+/// What is more than the tolerance behind a depth map is hidden, surfaces and outlines, unless it is looked through.
+#[test]
+fn a_depth_map_hides_what_is_behind_it() {
+    let Some(mut renderer) = renderer() else { return };
+    // Half millimetres. Left of the middle the scene is 200 mm before the box's front, right of it nothing was measured;
+    // its lowest rows are the front itself, seen 10 mm too near.
+    let near_mm = (DISTANCE_MM - HALF_MM.z) as u32 - 10;
+    let raw = (0..WIDTH * HEIGHT).map(|i| match (i % WIDTH, i / WIDTH) {
+        (_, y) if y >= 130 => 2 * near_mm as u16,
+        (x, _) if x < 161 => 560,
+        _ => 0,
+    });
+    let pixels = Arc::new(DepthPixels { width: WIDTH, height: HEIGHT, raw: raw.collect() });
+    let mut picture = box_picture(OverlayMode::Normals);
+    picture.occluder = Some(Occluder { pixels, mm_per_unit: 0.5 });
+    let seen = draw(&mut renderer, &picture);
+    let (mesh, nothing) = ([127.5, 127.5, 0.0], [0.0; 3]);
+    for (x, y, expected) in [(140, 110, nothing), (180, 110, mesh), (140, 140, mesh), (180, 140, mesh)] {
+        assert_close(at(&seen, x, y), expected, EIGHT_BITS);
+    }
+    // To the pixel: the border is between columns 160 and 161.
+    assert_close(at(&seen, 160, 110), nothing, EIGHT_BITS);
+    assert_close(at(&seen, 161, 110), mesh, EIGHT_BITS);
+    picture.look.x_ray = true;
+    assert!(lit_pixels(&draw(&mut renderer, &picture)) > lit_pixels(&seen));
+
+    let whole = box_picture(OverlayMode::Outline);
+    let hidden = Picture { occluder: picture.occluder, ..whole.clone() };
+    let [whole, hidden] = [whole, hidden].map(|picture| draw(&mut renderer, &picture));
+    assert_close(at(&hidden, 140, 110), nothing, EIGHT_BITS);
+    let left_side = |pixels: &Pixels| (100..120).filter(|x| at(pixels, *x, 100) != nothing).count();
+    assert!(left_side(&whole) > 0 && left_side(&hidden) == 0);
+}
+
+/// The photo below the meshes is drawn once and kept, and looks the same as if it were drawn with them.
+#[test]
+fn what_is_kept_below_the_meshes_is_what_was_drawn() {
+    let Some(mut renderer) = renderer() else { return };
+    let rgba =
+        (0..WIDTH * HEIGHT).flat_map(|i| [(i % 251) as u8, (i / WIDTH) as u8, (i % 7) as u8 * 30, 255]);
+    let photo = Pixels { width: WIDTH, height: HEIGHT, rgba: rgba.collect() };
+    let mut picture = box_picture(OverlayMode::Shaded);
+    picture.photo = Some(PhotoLayer(Arc::new(photo)));
+    picture.background = Rgb([90, 20, 40]);
+    picture.look.photo.contrast = 0.3;
+    // Something of what is around the photo is seen too, and the view is not at the framebuffer's corner.
+    picture.rect = ImageRect { min: DVec2::new(-20.3, 10.0), max: DVec2::new(250.2, 230.0) };
+    let mut seen = Vec::new();
+    for _ in 0..3 {
+        picture.items[0].camera_from_object.translation_mm.x += 1e-9;
+        seen.push(on_screen(&mut renderer, &picture, [13, 7]));
+    }
+    let [first, second, third] = &seen[..] else { panic!("three pictures") };
+    assert_eq!(first, second, "drawn directly, and when it is kept");
+    assert_eq!(first, third, "drawn directly, and from what was kept");
+    picture.look.photo.contrast = 0.0;
+    assert_ne!(&on_screen(&mut renderer, &picture, [13, 7]), third, "an older one is not taken for it");
+}
+
+/// What the interface's pass gets, with the view at a corner of the framebuffer.
+fn on_screen(renderer: &mut Renderer, picture: &Picture, corner: [u32; 2]) -> Pixels {
+    let gpu = renderer.gpu().clone();
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: WIDTH + 20, height: HEIGHT + 20, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    renderer.prepare(ViewSlot::Photo, &mut encoder, picture, corner, [WIDTH, HEIGHT]);
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &view,
+            resolve_target: None,
+            ops: wgpu::Operations::default(),
+            depth_slice: None,
+        })],
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    let [x, y, width, height] = [corner[0], corner[1], WIDTH, HEIGHT].map(|value| value as f32);
+    pass.set_viewport(x, y, width, height, 0.0, 1.0);
+    renderer.paint(ViewSlot::Photo, &mut pass);
+    drop(pass);
+    let pending = PixelsPending::copy(&gpu, &mut encoder, &texture);
+    gpu.queue.submit([encoder.finish()]);
+    pending.submitted();
+    pending.wait(&gpu).unwrap()
 }
 
 /// A mesh of very many triangles is drawn coarser while it moves, near enough for the eye, and exactly at rest.

@@ -17,6 +17,7 @@ pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
         renderer: None,
         pixels: None,
         masks: None,
+        depth: None,
         saving: Saving::Saved,
         busy: None,
         update_ready: false,

@@ -1,6 +1,7 @@
 //! The side panel: control above, display below, and the output at its foot.
 
 mod camera;
+mod depth;
 mod history;
 mod list;
 mod look;
@@ -99,6 +100,7 @@ fn control_and_display(ui: &mut Ui, session: &Session, state: &mut PanelState, c
     photos::draw(ui, session, state, commands);
     objects::draw(ui, session, state, commands);
     masks::draw(ui, session, state, commands);
+    depth::draw(ui, session, commands);
     references::draw(ui, session, &mut state.errors, commands);
     look::draw(ui, session, commands);
     ui.add_space(8.0);
