@@ -6,6 +6,7 @@ mod camera_json;
 mod companions;
 mod document;
 mod error;
+pub mod export;
 mod incoming;
 mod kind;
 mod matching;

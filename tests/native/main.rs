@@ -3,10 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod annotator;
+mod bop_folder;
 mod chrome;
 mod cli;
 mod demo_scene;
 mod documents;
+mod evaluate;
+mod export;
 mod gestures;
 mod gpu_and_cpu;
 mod images_corpus;
