@@ -9,6 +9,7 @@ mod companions;
 pub mod dataset;
 mod document;
 mod error;
+pub mod export;
 mod file_key;
 mod gather;
 mod incoming;
