@@ -18,6 +18,7 @@ mod kind;
 mod matching;
 mod megapose;
 mod npy;
+mod own_poses;
 mod pose_array;
 mod pose_text;
 mod sixdpat;
@@ -67,11 +68,18 @@ pub fn parse_text_or_archive(file: &NamedFile, kind: FileKind) -> Result<Parsed,
         FileKind::Json => json::parse_json(file),
         FileKind::Npy => parse_array(name, &npy::read_npy(bytes)?),
         FileKind::Yaml => Ok(Parsed::Camera(camera::read_opencv_yaml(name, text(bytes)?)?)),
-        FileKind::Csv => Ok(Parsed::Poses(bop::read_results(name, text(bytes)?)?)),
+        FileKind::Csv => parse_csv(name, text(bytes)?).map(Parsed::Poses),
         FileKind::Matrix => parse_array(name, &camera::read_matrix_text(text(bytes)?)?),
         FileKind::Pickle => Err(FormatError::Pickle),
         FileKind::Photo | FileKind::Mesh | FileKind::Unknown => Err(FormatError::Unknown),
     }
+}
+
+fn parse_csv(name: &str, text: &str) -> Result<Incoming, FormatError> {
+    if own_poses::is_poses_csv(text) {
+        return own_poses::read_poses_csv(name, text);
+    }
+    bop::read_results(name, text)
 }
 
 /// A 3×3 is a camera, a 4×4 a pose.

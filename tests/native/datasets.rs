@@ -12,7 +12,7 @@ use pinpose::session::{Batch, Command, Session};
 use serde_json::{Value, json};
 
 use crate::data_folder;
-use crate::support::NOW_MS;
+use crate::support::{CAMERA_JSON, NOW_MS, box_mesh, flat_photo};
 
 fn files_below(folder: &Path, prefix: &str, files: &mut Vec<(String, u64)>) {
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -320,4 +320,36 @@ fn render_opens_one_scene_and_asks_which_of_several() {
     let one = run(&demo.join("test/000001"));
     assert!(one.status.success(), "{}", String::from_utf8_lossy(&one.stderr));
     assert_eq!(std::fs::read_dir(&out).unwrap().count(), 80);
+}
+
+#[test]
+fn poses_exported_in_another_convention_are_read_back() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("poses-back");
+    std::fs::remove_dir_all(&folder).ok();
+    std::fs::create_dir_all(&folder).unwrap();
+    for file in [flat_photo("photo.png", 640, 480), box_mesh("box.obj")] {
+        std::fs::write(folder.join(file.name), &file.bytes).unwrap();
+    }
+    let truth = format!("{CAMERA_JSON}\nbox <-> photo\n0 -1 0 5\n1 0 0 6\n0 0 1 700\n0 0 0 1\n");
+    std::fs::write(folder.join("truth.txt"), truth).unwrap();
+    let path = |name: &str| folder.join(name).display().to_string();
+    let run = |arguments: &[&str]| {
+        let output = pinpose(arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let (photo, mesh, out) = (path("photo.png"), path("box.obj"), path("out"));
+    let convention = ["--axes", "opengl", "--unit", "m", "--direction", "object_from_camera"];
+    let export = ["convert", &photo, &mesh, &path("truth.txt"), &out, "--to", "poses,csv"];
+    run(&[&export[..], &convention[..]].concat());
+    for name in ["out/poses.json", "out/poses.csv"] {
+        run(&["convert", &photo, &mesh, &path(name), &path("again.json")]);
+        let again: Value =
+            serde_json::from_slice(&std::fs::read(folder.join("again.json")).unwrap()).unwrap();
+        let (pose, _) =
+            Pose::from_rows(&rows(&again["photos"][0]["poses"][0]["camera_from_object"])).unwrap();
+        // There and back are a few products of numbers below 1e3.
+        assert!(pose.translation_mm.distance(DVec3::new(5.0, 6.0, 700.0)) < 1e-9, "{name}: {pose:?}");
+        assert!((pose.rotation * DVec3::X).distance(DVec3::Y) < 1e-12, "{name}: {pose:?}");
+        assert_eq!(again["photos"][0]["K"][0][0], 520.5, "{name}");
+    }
 }
