@@ -182,6 +182,7 @@ fn effect_of(id: CommandId) -> Option<Effect> {
         CommandId::SaveScene => Effect::SaveNow,
         CommandId::SaveSceneAs => Effect::AskSaveAs,
         CommandId::PastePose => Effect::AskForPose,
+        CommandId::ExportFiles => Effect::AskForExport,
         CommandId::RenameObject => Effect::RenameSelected,
         CommandId::ZoomToObject => Effect::ZoomToObject,
         CommandId::FitPhoto => Effect::FitPhoto,

@@ -32,6 +32,7 @@ pub const MENUS: [MenuPlan; 5] = [
                 CommandId::OpenWorkspace,
             ],
             &[
+                CommandId::ExportFiles,
                 CommandId::ExportPoses,
                 CommandId::ExportOverlay,
                 CommandId::ExportMask,
