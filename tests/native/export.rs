@@ -397,9 +397,10 @@ fn pictures_hold_what_they_say() {
             seen += 1;
         }
         assert!(seen > ENOUGH_PIXELS, "{}: {seen}", object.name);
-        // The boxes' lines are in the object's colour.
-        let line = [0, 1].map(|axis| info["box_visible"][axis].as_u64().unwrap() as u32);
-        assert_eq!(boxes.get_pixel(line[0] + 5, line[1]).0, object.color.0, "{}", object.name);
+        // The upper side of the box is in the object's colour, but where another one's lines cross it.
+        let [x, y, width] = [0, 1, 2].map(|at| info["box_visible"][at].as_u64().unwrap() as u32);
+        let drawn = (x..x + width).filter(|x| boxes.get_pixel(*x, y).0 == object.color.0).count();
+        assert!(drawn as f64 > 0.9 * f64::from(width), "{}: {drawn} of {width}", object.name);
     }
 }
 
