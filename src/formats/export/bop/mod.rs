@@ -114,6 +114,6 @@ pub(super) fn image_path(plan: &Plan, folder: &str, image_id: u32, extension: &s
 
 /// The results file's name: `METHOD_DATASET-SPLIT.csv`, neither of the two with an underscore or a hyphen of its own.
 pub(super) fn results_path(plan: &Plan) -> String {
-    let letters: String = plan.scene.name.chars().filter(|c| c.is_ascii_alphanumeric()).collect();
+    let letters: String = plan.scene.name.chars().filter(char::is_ascii_alphanumeric).collect();
     format!("bop/pinpose_{}-test.csv", if letters.is_empty() { "scene" } else { &letters })
 }
