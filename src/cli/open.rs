@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::Failure;
 use crate::formats::{
-    FileKind, FileWithCompanions, Incoming, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
+    FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
     read_mesh_with, read_photo, with_companions,
 };
 use crate::session::{Batch, Command, Effect, Opening, Session, Severity};
@@ -33,7 +33,7 @@ pub fn read_files(paths: &[PathBuf]) -> Result<Vec<NamedFile>, Failure> {
     if problems.is_empty() { Ok(files) } else { Err(Failure::Input(problems)) }
 }
 
-fn expand(path: &Path) -> std::io::Result<Vec<PathBuf>> {
+pub fn expand(path: &Path) -> std::io::Result<Vec<PathBuf>> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -44,7 +44,7 @@ fn expand(path: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-fn file_name(path: &Path) -> String {
+pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
@@ -60,46 +60,6 @@ pub fn parse(file: &NamedFile, companions: &[NamedFile]) -> Result<(Parsed, Vec<
         kind => parse_text_or_archive(file, kind).map(|parsed| (parsed, Vec::new())),
     };
     parsed.map_err(|error| format!("{}: {error}", file.name))
-}
-
-/// What was named as poses: the poses, and files that are none of that but may be needed with them.
-pub struct PoseFiles {
-    pub poses: Vec<Incoming>,
-    pub other_files: Vec<PathBuf>,
-}
-
-/// Reads poses without their photos and meshes: of a workspace its document alone.
-pub fn read_poses(paths: &[PathBuf]) -> Result<PoseFiles, Failure> {
-    let mut found = PoseFiles { poses: Vec::new(), other_files: Vec::new() };
-    let mut problems = Vec::new();
-    for path in paths {
-        let files =
-            expand(path).map_err(|error| Failure::Input(vec![format!("{}: {error}", path.display())]))?;
-        for path in files {
-            match read_poses_of(&path) {
-                Ok(Some(poses)) => found.poses.push(poses),
-                Ok(None) => found.other_files.push(path),
-                Err(problem) => problems.push(problem),
-            }
-        }
-    }
-    if problems.is_empty() { Ok(found) } else { Err(Failure::Input(problems)) }
-}
-
-/// `None` for a file that holds none.
-fn read_poses_of(path: &Path) -> Result<Option<Incoming>, String> {
-    let bytes = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let file = NamedFile { name: file_name(path), bytes: Arc::from(bytes) };
-    if matches!(classify(&file.name, &file.bytes), FileKind::Photo | FileKind::Mesh | FileKind::Unknown) {
-        return Ok(None);
-    }
-    match parse(&file, &[])?.0 {
-        Parsed::Poses(poses) => Ok(Some(poses)),
-        Parsed::Workspace(workspace) => Incoming::from_document(&file.name, &workspace.document)
-            .map(Some)
-            .map_err(|error| format!("{}: {error}", file.name)),
-        Parsed::Photo(_) | Parsed::Mesh(_) | Parsed::Camera(_) => Ok(None),
-    }
 }
 
 /// Opens everything together. Files of a folder that are none of ours (notes, licences) are left out with a word; a file

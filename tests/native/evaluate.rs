@@ -138,6 +138,12 @@ fn errors_are_those_of_numpy() {
     let largest = largest_difference(&cases, &found, &expected);
     println!("122 poses: largest relative difference from NumPy {largest:.1e}");
 
+    let schema = include_str!("../../src/cli/evaluate/evaluation.schema.json");
+    let schema: Value = serde_json::from_str(schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> = validator.iter_errors(&found).map(|error| error.to_string()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
+
     let same = evaluate(&["--truth".to_owned(), truth.clone(), "--json".to_owned(), truth, models, photos]);
     for (metric, summary) in same["summary"].as_object().unwrap() {
         // RᵀR is the identity but for rounding.

@@ -70,6 +70,10 @@ fn the_demo_as_bop_is_what_it_was() {
             let depth = format!("depth/{image:06}.png");
             same_bytes(written.0.join(&depth), original.0.join(&depth));
         }
+        for name in ["obj_000001.ply", "obj_000001.png", "obj_000004.ply"] {
+            let file = |folder: &BopFolder| std::fs::read(folder.models().join(name)).unwrap();
+            assert!(file(&written) == file(&original), "{name} is not the file that was opened");
+        }
         for (id, info) in original.model_infos() {
             let ours = &written.model_infos()[&id];
             // Theirs was computed in f64 from the coordinates before they were rounded to f32.
@@ -220,7 +224,7 @@ fn the_script_projects_where_we_do() {
         if number == 0 {
             let models = demo(1).models().display().to_string();
             let printed = run("pinpose.json", &[&models]);
-            assert_eq!(printed["poses"].as_array().unwrap().len(), 5 * 16, "the document has all photos");
+            assert_eq!(printed["poses"].as_array().unwrap().len(), 10, "of the chosen photos");
         }
     }
     println!("the script agrees; OpenCV: {opencv}");
@@ -397,9 +401,10 @@ fn pictures_hold_what_they_say() {
             seen += 1;
         }
         assert!(seen > ENOUGH_PIXELS, "{}: {seen}", object.name);
-        // The boxes' lines are in the object's colour.
-        let line = [0, 1].map(|axis| info["box_visible"][axis].as_u64().unwrap() as u32);
-        assert_eq!(boxes.get_pixel(line[0] + 5, line[1]).0, object.color.0, "{}", object.name);
+        // The upper side of the box is in the object's colour, but where another one's lines cross it.
+        let [x, y, width] = [0, 1, 2].map(|at| info["box_visible"][at].as_u64().unwrap() as u32);
+        let drawn = (x..x + width).filter(|x| boxes.get_pixel(*x, y).0 == object.color.0).count();
+        assert!(drawn as f64 > 0.9 * f64::from(width), "{}: {drawn} of {width}", object.name);
     }
 }
 
