@@ -1,12 +1,16 @@
-//! `pinpose inspect FILE…`: what files are and what is in them.
+//! `pinpose inspect IN…`: what files are and what is in them; what a folder or a zip is, and what of it is found, guessed and
+//! missing.
+
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::source::Source;
 use super::{Failure, Outcome, open};
 use crate::formats::{FileWithCompanions, NamedFile, Parsed, with_companions};
 
 pub fn run(mut parser: lexopt::Parser) -> Outcome {
-    let mut paths = Vec::new();
+    let mut paths: Vec<PathBuf> = Vec::new();
     let mut as_json = false;
     while let Some(argument) = parser.next()? {
         match argument {
@@ -20,7 +24,18 @@ pub fn run(mut parser: lexopt::Parser) -> Outcome {
     }
     let mut problems = Vec::new();
     let mut found = Vec::new();
-    for FileWithCompanions { file, companions } in with_companions(open::read_files(&paths)?) {
+    let mut files = Vec::new();
+    for path in paths {
+        match Source::open(&path) {
+            Ok(Some(source)) => match describe_dataset(&path, source) {
+                Ok(described) => found.push(described),
+                Err(problem) => problems.push(problem),
+            },
+            Ok(None) => files.push(path),
+            Err(problem) => problems.push(problem),
+        }
+    }
+    for FileWithCompanions { file, companions } in with_companions(open::read_files(&files)?) {
         match open::parse(&file, &companions) {
             Ok((parsed, warnings)) => found.push(describe(&file, &parsed, &warnings)),
             Err(problem) => problems.push(problem),
@@ -32,6 +47,31 @@ pub fn run(mut parser: lexopt::Parser) -> Outcome {
         found.iter().for_each(print_plain);
     }
     if problems.is_empty() { Ok(()) } else { Err(Failure::Input(problems)) }
+}
+
+fn describe_dataset(path: &Path, mut source: Source) -> Result<Value, String> {
+    let all: Vec<usize> = (0..source.recognised.choices.len()).collect();
+    let dataset = source.interpret(&all).map_err(|problem| format!("{}: {problem}", path.display()))?;
+    let scenes: Vec<Value> = source
+        .recognised
+        .choices
+        .iter()
+        .map(|choice| json!({"name": choice.label, "photos": choice.photos, "bytes": choice.bytes}))
+        .collect();
+    Ok(json!({
+        "file": path.display().to_string(),
+        "kind": dataset.kind.name(),
+        "content": {
+            "name": dataset.name,
+            "scenes": scenes,
+            "photos": dataset.photos.len(),
+            "meshes": dataset.meshes.iter().map(|mesh| mesh.path.as_str()).collect::<Vec<_>>(),
+            "poses": dataset.pose_count(),
+        },
+        "found": dataset.found,
+        "guessed": dataset.guessed,
+        "missing": dataset.missing,
+    }))
 }
 
 fn describe(file: &NamedFile, parsed: &Parsed, warnings: &[String]) -> Value {
@@ -89,11 +129,23 @@ fn mesh_content(asset: &crate::scene::MeshAsset) -> Value {
 
 fn print_plain(found: &Value) {
     let text = |key: &str| found[key].as_str().unwrap_or_default().to_owned();
-    println!("{}: {}, {} bytes", text("file"), text("kind"), found["bytes"]);
-    for (key, value) in found["content"].as_object().into_iter().flatten() {
+    match &found["bytes"] {
+        Value::Null => println!("{}: {}", text("file"), text("kind")),
+        bytes => println!("{}: {}, {bytes} bytes", text("file"), text("kind")),
+    }
+    // What a data set holds is told in words below.
+    let counted = found["found"].is_array();
+    for (key, value) in found["content"].as_object().into_iter().flatten().filter(|_| !counted) {
         println!("  {key}: {value}");
     }
-    for warning in found["warnings"].as_array().into_iter().flatten() {
-        println!("  note: {}", warning.as_str().unwrap_or_default());
+    for scene in found["content"]["scenes"].as_array().into_iter().flatten() {
+        println!("  scene: {}, {} photos", scene["name"].as_str().unwrap_or_default(), scene["photos"]);
+    }
+    for (key, label) in
+        [("found", "found"), ("guessed", "guessed"), ("missing", "missing"), ("warnings", "note")]
+    {
+        for line in found[key].as_array().into_iter().flatten() {
+            println!("  {label}: {}", line.as_str().unwrap_or_default());
+        }
     }
 }

@@ -5,6 +5,7 @@ mod evaluate;
 mod inspect;
 mod open;
 mod render;
+mod source;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -13,7 +14,7 @@ const USAGE: &str = "\
 PinPose, a 6D object pose annotator
 
 pinpose                              open the window
-pinpose inspect FILE… [--json]       say what files are and what is in them
+pinpose inspect IN… [--json]         say what files, folders and zips are, what is in them, guessed and missing
 pinpose convert IN… OUT              read files or folders, write poses (.json, .csv) or a workspace (.zip)
         [--to json,poses,npy,csv,meshes,bop,masks,visible_masks,depth,nocs,boxes]
         with it OUT is a folder, or a .zip of what is asked for

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Failure;
+use super::source::Source;
+use crate::formats::dataset::Dataset;
 use crate::formats::{
     FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
-    read_mesh_with, read_photo, with_companions,
+    read_mesh_with, read_photo, read_photo_header, with_companions,
 };
 use crate::session::{Batch, Command, Effect, Opening, Session, Severity};
 
@@ -33,7 +35,7 @@ pub fn read_files(paths: &[PathBuf]) -> Result<Vec<NamedFile>, Failure> {
     if problems.is_empty() { Ok(files) } else { Err(Failure::Input(problems)) }
 }
 
-pub fn expand(path: &Path) -> std::io::Result<Vec<PathBuf>> {
+fn expand(path: &Path) -> std::io::Result<Vec<PathBuf>> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -65,9 +67,17 @@ pub fn parse(file: &NamedFile, companions: &[NamedFile]) -> Result<(Parsed, Vec<
 /// Opens everything together. Files of a folder that are none of ours (notes, licences) are left out with a word; a file
 /// that was named by itself has to be readable.
 pub fn open_session(paths: &[PathBuf]) -> Result<Session, Failure> {
-    let named: Vec<String> = paths.iter().filter(|path| !path.is_dir()).map(|path| file_name(path)).collect();
     let mut opened = Opened::default();
-    for FileWithCompanions { file, companions } in with_companions(read_files(paths)?) {
+    let mut files = Vec::new();
+    for path in paths {
+        match Source::open(path) {
+            Ok(Some(source)) => opened.take_dataset(path, source),
+            Ok(None) => files.push(path.clone()),
+            Err(problem) => opened.problems.push(problem),
+        }
+    }
+    let named: Vec<String> = files.iter().filter(|path| !path.is_dir()).map(|path| file_name(path)).collect();
+    for FileWithCompanions { file, companions } in with_companions(read_files(&files)?) {
         if !named.contains(&file.name) && classify(&file.name, &file.bytes) == FileKind::Unknown {
             eprintln!("pinpose: {}: left out, not a kind of file that is read", file.name);
             continue;
@@ -105,6 +115,72 @@ impl Opened {
             }
             Err(problem) if lenient => eprintln!("pinpose: {problem}: left out"),
             Err(problem) => self.problems.push(problem),
+        }
+    }
+
+    /// The photos, meshes and poses of a data set's one scene.
+    fn take_dataset(&mut self, path: &Path, mut source: Source) {
+        let at = |text: &str| format!("{}: {text}", path.display());
+        if let [_, _, ..] = source.recognised.choices.as_slice() {
+            let labels: Vec<&str> =
+                source.recognised.choices.iter().take(20).map(|choice| choice.label.as_str()).collect();
+            self.problems
+                .push(at(&format!("it holds several scenes, name the folder of one: {}", labels.join(", "))));
+            return;
+        }
+        let dataset = match source.interpret(&[0]) {
+            Ok(dataset) => dataset,
+            Err(problem) => {
+                self.problems.push(at(&problem));
+                return;
+            }
+        };
+        for line in dataset.guessed.iter().map(|line| format!("guessed: {line}")) {
+            eprintln!("pinpose: {}", at(&line));
+        }
+        for line in dataset.missing.iter().map(|line| format!("missing: {line}")) {
+            eprintln!("pinpose: {}", at(&line));
+        }
+        let setting = dataset.setting();
+        self.read_photos(&mut source, &dataset);
+        self.read_meshes(&mut source, &dataset);
+        self.batch.poses.push(setting);
+        self.batch.poses.extend(dataset.poses);
+    }
+
+    fn read_photos(&mut self, source: &mut Source, dataset: &Dataset) {
+        for photo in &dataset.photos {
+            let read = source.read(&photo.path).and_then(|bytes| {
+                let file = NamedFile { name: photo.path.clone(), bytes };
+                read_photo_header(&file).map_err(|error| format!("{}: {error}", photo.path))
+            });
+            match read {
+                Ok(asset) => self.batch.photos.push(Arc::new(asset)),
+                Err(problem) => eprintln!("pinpose: {problem}: left out"),
+            }
+        }
+    }
+
+    fn read_meshes(&mut self, source: &mut Source, dataset: &Dataset) {
+        for mesh in &dataset.meshes {
+            let read = source.read(&mesh.path).and_then(|bytes| {
+                let file = NamedFile { name: mesh.path.clone(), bytes };
+                let mut files = vec![file];
+                for path in &mesh.companions {
+                    files.extend(source.read(path).ok().map(|bytes| NamedFile { name: path.clone(), bytes }));
+                }
+                // Which of them it asks for, its content says.
+                let own = with_companions(files).into_iter().find(|entry| entry.file.name == mesh.path);
+                let own = own.ok_or_else(|| format!("{}: it is no mesh", mesh.path))?;
+                read_mesh_with(&own.file, &own.companions).map_err(|error| format!("{}: {error}", mesh.path))
+            });
+            match read {
+                Ok((asset, warnings)) => {
+                    warnings.iter().for_each(|warning| eprintln!("pinpose: {}: {warning}", mesh.path));
+                    self.batch.meshes.push(Arc::new(asset));
+                }
+                Err(problem) => eprintln!("pinpose: {problem}: left out"),
+            }
         }
     }
 

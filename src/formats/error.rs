@@ -9,10 +9,18 @@ use crate::photo::PhotoError;
 #[derive(Debug, Error)]
 pub enum FormatError {
     #[error(
-        "not a file this version reads: a photo (PNG, JPEG, WebP, BMP, TIFF), a mesh (PLY, OBJ, STL, glTF, OFF), a camera (JSON), poses (PinPose JSON, \
-         Vision6D ground truth) or a PinPose workspace (zip) expected"
+        "not a file this version reads: a photo (PNG, JPEG, WebP, BMP, TIFF), a mesh (PLY, OBJ, STL, glTF, OFF), a camera (JSON, \
+         .npy, OpenCV YAML, 3×3 text), poses (PinPose JSON, scene_gt.json, results CSV, .npy, Vision6D, 6D-PAT, MegaPose), a \
+         PinPose workspace (zip) or the folder of a data set expected"
     )]
     Unknown,
+    #[error(
+        "a Python pickle, which could run code when it is opened and is therefore never read: save the camera as JSON \
+         (fx, fy, cx, cy, width, height) or its matrix with numpy.save"
+    )]
+    Pickle,
+    #[error("more than {megabytes} MiB of text: no camera and no poses of photos that somebody annotates")]
+    TooMuchText { megabytes: usize },
     #[error("the file is empty")]
     Empty,
     #[error("not text: the bytes from {byte} on are not UTF-8")]

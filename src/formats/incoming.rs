@@ -85,6 +85,8 @@ pub struct IncomingPose {
     pub source: PoseSource,
     /// `None`: now.
     pub changed_at_ms: Option<f64>,
+    /// How sure whoever estimated it was.
+    pub score: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq)]

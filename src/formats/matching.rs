@@ -1,46 +1,15 @@
 //! Finding the photos and meshes that incoming poses speak of, and giving the poses to the scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::file_key::PhotoFinder;
 use super::incoming::PhotoLook;
-use super::{Incoming, IncomingCamera, IncomingObject, PosesAs};
+use super::{FileKey, Incoming, IncomingCamera, IncomingObject, PosesAs};
 use crate::math::Pose;
 use crate::scene::{
-    Annotation, CameraOrigin, MeshAsset, ObjectId, Photo, PhotoId, Reference, Scene, Sha256, file_stem,
+    Annotation, CameraOrigin, MeshAsset, ObjectId, Photo, PhotoId, Reference, Scene, file_stem,
 };
-
-/// How a file of poses names a photo or a mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub enum FileKey {
-    /// Our own files: the content decides, the name is for messages.
-    Content { sha256: Sha256, file_name: String },
-    /// Others': a file name without its extension.
-    Stem(String),
-}
-
-impl FileKey {
-    pub fn stem(&self) -> &str {
-        match self {
-            Self::Content { file_name, .. } => file_stem(file_name),
-            Self::Stem(stem) => stem,
-        }
-    }
-
-    fn matches(&self, file_name: &str, sha256: Sha256) -> bool {
-        match self {
-            Self::Content { sha256: wanted, .. } => *wanted == sha256,
-            Self::Stem(stem) => file_stem(file_name) == stem,
-        }
-    }
-
-    fn display(&self) -> String {
-        match self {
-            Self::Content { file_name, .. } => file_name.clone(),
-            Self::Stem(stem) => stem.clone(),
-        }
-    }
-}
 
 /// What became of an import.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -61,8 +30,8 @@ impl Incoming {
     /// Gives cameras and poses to the scene as far as their files are in it.
     pub fn apply(&self, scene: &mut Scene, poses_as: PosesAs, now_ms: f64) -> Outcome {
         let mut outcome = Outcome::default();
-        let photos: Vec<Option<PhotoId>> =
-            self.photos.iter().map(|photo| find_photo(scene, &photo.key).map(|photo| photo.id)).collect();
+        let finder = PhotoFinder::new(scene, self);
+        let photos: Vec<Option<PhotoId>> = self.photos.iter().map(|photo| finder.find(&photo.key)).collect();
         let objects = self.find_objects(scene);
         self.list_missing(&photos, &objects, &mut outcome);
 
@@ -123,6 +92,7 @@ impl Incoming {
                     source: pose.source,
                     changed_at_ms: pose.changed_at_ms.unwrap_or(now_ms),
                     camera_changed: false,
+                    score: pose.score,
                 };
                 scene.annotations.insert((photo, object), annotation);
                 outcome.applied += 1;
@@ -159,8 +129,10 @@ impl Incoming {
     /// objects of it, more are made.
     fn find_objects(&self, scene: &mut Scene) -> Vec<Option<ObjectId>> {
         let mut taken: Vec<ObjectId> = Vec::new();
+        let first = scene.objects.first().map(|object| object.mesh.sha256);
+        let is_only_mesh = scene.objects.iter().all(|object| Some(object.mesh.sha256) == first);
         let mut find = |incoming: &IncomingObject| {
-            let matches = |mesh: &MeshAsset| incoming.key.matches(&mesh.file_name, mesh.sha256);
+            let matches = |mesh: &MeshAsset| incoming.key.names_mesh(mesh, is_only_mesh);
             let free =
                 scene.objects.iter().find(|object| matches(&object.mesh) && !taken.contains(&object.id));
             let id = match free {
@@ -168,8 +140,10 @@ impl Incoming {
                 None => {
                     let known = scene.objects.iter().find(|object| matches(&object.mesh))?;
                     let (mesh, mesh_from_file) = (known.mesh.clone(), known.mesh_from_file);
+                    let symmetries = known.symmetries.clone();
                     let id = scene.add_object(mesh);
-                    scene.object_mut(id)?.mesh_from_file = mesh_from_file;
+                    let object = scene.object_mut(id)?;
+                    (object.mesh_from_file, object.symmetries) = (mesh_from_file, symmetries);
                     id
                 }
             };
@@ -184,17 +158,10 @@ impl Incoming {
             self.photos.iter().zip(photos).filter(|(_, id)| id.is_none()).map(|(photo, _)| &photo.key);
         let missing_objects =
             self.objects.iter().zip(objects).filter(|(_, id)| id.is_none()).map(|(object, _)| &object.key);
-        for key in missing_photos.chain(missing_objects) {
-            let name = key.display();
-            if !outcome.missing.contains(&name) {
-                outcome.missing.push(name);
-            }
-        }
+        let mut named = BTreeSet::new();
+        let names = missing_photos.chain(missing_objects).map(FileKey::display);
+        outcome.missing = names.filter(|name| named.insert(name.clone())).collect();
     }
-}
-
-fn find_photo<'a>(scene: &'a Scene, key: &FileKey) -> Option<&'a Photo> {
-    scene.photos.iter().find(|photo| key.matches(&photo.asset.file_name, photo.asset.sha256))
 }
 
 fn give_camera(scene: &mut Scene, id: PhotoId, camera: &IncomingCamera, outcome: &mut Outcome) {

@@ -2,29 +2,42 @@
 //!
 //! Knows nothing of the interface: bytes and names in, [`Parsed`] or one [`FormatError`] out.
 
-mod camera_json;
+mod archive;
+mod bop;
+mod camera;
 mod companions;
+pub mod dataset;
 mod document;
 mod error;
 pub mod export;
+mod file_key;
+mod gather;
 mod incoming;
+mod json;
 mod kind;
 mod matching;
+mod megapose;
+mod npy;
+mod pose_array;
 mod pose_text;
+mod sixdpat;
 mod vision6d;
 mod workspace;
+mod yaml;
 
 use std::sync::Arc;
 
-use crate::scene::{MeshAsset, PhotoAsset};
+use crate::scene::{MeshAsset, PhotoAsset, file_stem};
 
-pub use camera_json::CameraFile;
+pub use archive::Archive;
+pub use camera::CameraFile;
 pub use companions::{FileWithCompanions, kept, with_companions};
 pub use document::{DOCUMENT_SCHEMA, Document, Keep, ViewSettings, read_document, write_document};
 pub use error::FormatError;
+pub use file_key::FileKey;
 pub use incoming::{Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, PosesAs};
 pub use kind::{FileKind, classify};
-pub use matching::{FileKey, Outcome};
+pub use matching::Outcome;
 pub use pose_text::{PoseText, read_pose_text, write_pose_text};
 pub use workspace::{Workspace, read_workspace, write_workspace};
 
@@ -47,23 +60,26 @@ pub enum Parsed {
 
 /// Reads the small text files and archives; photos and meshes, which take their time, have functions of their own.
 pub fn parse_text_or_archive(file: &NamedFile, kind: FileKind) -> Result<Parsed, FormatError> {
+    let (name, bytes) = (file.name.as_str(), &*file.bytes);
     match kind {
-        FileKind::Workspace => Ok(Parsed::Workspace(read_workspace(&file.bytes)?)),
-        FileKind::Vision6dTruth => {
-            Ok(Parsed::Poses(vision6d::read_ground_truth(&file.name, text(&file.bytes)?)?))
-        }
-        FileKind::Json => parse_json(file),
+        FileKind::Workspace => Ok(Parsed::Workspace(read_workspace(bytes)?)),
+        FileKind::Vision6dTruth => Ok(Parsed::Poses(vision6d::read_ground_truth(name, text(bytes)?)?)),
+        FileKind::Json => json::parse_json(file),
+        FileKind::Npy => parse_array(name, &npy::read_npy(bytes)?),
+        FileKind::Yaml => Ok(Parsed::Camera(camera::read_opencv_yaml(name, text(bytes)?)?)),
+        FileKind::Csv => Ok(Parsed::Poses(bop::read_results(name, text(bytes)?)?)),
+        FileKind::Matrix => parse_array(name, &camera::read_matrix_text(text(bytes)?)?),
+        FileKind::Pickle => Err(FormatError::Pickle),
         FileKind::Photo | FileKind::Mesh | FileKind::Unknown => Err(FormatError::Unknown),
     }
 }
 
-fn parse_json(file: &NamedFile) -> Result<Parsed, FormatError> {
-    let value: serde_json::Value = serde_json::from_slice(&file.bytes).map_err(FormatError::json)?;
-    if value.get("format").is_some() {
-        let document = read_document(&file.bytes)?;
-        return Ok(Parsed::Poses(Incoming::from_document(&file.name, &document)?));
+/// A 3×3 is a camera, a 4×4 a pose.
+fn parse_array(name: &str, array: &npy::NpyArray) -> Result<Parsed, FormatError> {
+    if array.shape == [3, 3] {
+        return camera::read_matrix_array(name, array).map(Parsed::Camera);
     }
-    camera_json::read_camera(&file.name, &value).map(Parsed::Camera)
+    pose_array::read_pose_array(name, array).map(Parsed::Poses)
 }
 
 fn text(bytes: &[u8]) -> Result<&str, FormatError> {
@@ -82,6 +98,19 @@ pub fn read_photo(file: &NamedFile) -> Result<(PhotoAsset, crate::photo::Pixels)
         exif_focal_px: decoded.exif_focal_px,
     };
     Ok((asset, decoded.pixels))
+}
+
+/// A photo's file by its header alone: its pixels are decoded when it is looked at.
+pub fn read_photo_header(file: &NamedFile) -> Result<PhotoAsset, FormatError> {
+    let header = crate::photo::read_header(&file.bytes)?;
+    Ok(PhotoAsset {
+        file_name: file.name.clone(),
+        sha256: crate::scene::Sha256::of(&file.bytes),
+        bytes: file.bytes.clone(),
+        width: header.width,
+        height: header.height,
+        exif_focal_px: header.exif_focal_px,
+    })
 }
 
 /// Parses a mesh's file that came alone; the second value is what was odd about it.

@@ -264,6 +264,7 @@ impl Session {
                 source,
                 changed_at_ms: now_ms,
                 camera_changed: false,
+                score: None,
             };
             self.scene.annotations.insert(target, annotation);
         }

