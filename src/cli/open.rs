@@ -8,7 +8,7 @@ use super::Failure;
 use super::source::Source;
 use crate::formats::dataset::Dataset;
 use crate::formats::{
-    FileKind, FileWithCompanions, Incoming, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
+    FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
     read_mesh_with, read_photo, read_photo_header, with_companions,
 };
 use crate::session::{Batch, Command, Effect, Opening, Session, Severity};
@@ -46,7 +46,7 @@ fn expand(path: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-fn file_name(path: &Path) -> String {
+pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
@@ -62,46 +62,6 @@ pub fn parse(file: &NamedFile, companions: &[NamedFile]) -> Result<(Parsed, Vec<
         kind => parse_text_or_archive(file, kind).map(|parsed| (parsed, Vec::new())),
     };
     parsed.map_err(|error| format!("{}: {error}", file.name))
-}
-
-/// What was named as poses: the poses, and files that are none of that but may be needed with them.
-pub struct PoseFiles {
-    pub poses: Vec<Incoming>,
-    pub other_files: Vec<PathBuf>,
-}
-
-/// Reads poses without their photos and meshes: of a workspace its document alone.
-pub fn read_poses(paths: &[PathBuf]) -> Result<PoseFiles, Failure> {
-    let mut found = PoseFiles { poses: Vec::new(), other_files: Vec::new() };
-    let mut problems = Vec::new();
-    for path in paths {
-        let files =
-            expand(path).map_err(|error| Failure::Input(vec![format!("{}: {error}", path.display())]))?;
-        for path in files {
-            match read_poses_of(&path) {
-                Ok(Some(poses)) => found.poses.push(poses),
-                Ok(None) => found.other_files.push(path),
-                Err(problem) => problems.push(problem),
-            }
-        }
-    }
-    if problems.is_empty() { Ok(found) } else { Err(Failure::Input(problems)) }
-}
-
-/// `None` for a file that holds none.
-fn read_poses_of(path: &Path) -> Result<Option<Incoming>, String> {
-    let bytes = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let file = NamedFile { name: file_name(path), bytes: Arc::from(bytes) };
-    if matches!(classify(&file.name, &file.bytes), FileKind::Photo | FileKind::Mesh | FileKind::Unknown) {
-        return Ok(None);
-    }
-    match parse(&file, &[])?.0 {
-        Parsed::Poses(poses) => Ok(Some(poses)),
-        Parsed::Workspace(workspace) => Incoming::from_document(&file.name, &workspace.document)
-            .map(Some)
-            .map_err(|error| format!("{}: {error}", file.name)),
-        Parsed::Photo(_) | Parsed::Mesh(_) | Parsed::Camera(_) => Ok(None),
-    }
 }
 
 /// Opens everything together. Files of a folder that are none of ours (notes, licences) are left out with a word; a file

@@ -17,9 +17,9 @@ mod web;
 pub use memory::MemoryStorage;
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
-    Background, FolderStorage, default_storage, download, fetch_example, memory_bytes, navigation_ms,
-    new_scene_id, now_ms, page_parameter, page_version, pick_files, reload, report_crash, send_event, spawn,
-    update_offer, wasm_bytes, when_left,
+    Background, ExportFolder, FolderStorage, GrowingDownload, default_storage, download, fetch_example,
+    memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, reload,
+    report_crash, send_event, spawn, update_offer, wasm_bytes, when_left,
 };
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
@@ -32,9 +32,9 @@ pub use storage::{
 pub use time_zone::utc_offset_minutes;
 #[cfg(target_arch = "wasm32")]
 pub use web::{
-    Background, default_storage, download, fetch_example, install_panic_hook, memory_bytes, navigation_ms,
-    new_scene_id, now_ms, page_parameter, page_version, pick_files, reload, report_crash, send_event, spawn,
-    update_offer, wasm_bytes, watch_for_updates, when_left,
+    Background, ExportFolder, GrowingDownload, default_storage, download, fetch_example, install_panic_hook,
+    memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, reload,
+    report_crash, send_event, spawn, update_offer, wasm_bytes, watch_for_updates, when_left,
 };
 
 /// A file that the user picked or dropped.

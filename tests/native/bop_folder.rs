@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use pinpose::formats::{read_mesh, read_photo};
+use pinpose::formats::{NamedFile, read_mesh_with, read_photo};
 use pinpose::math::{Intrinsics, Pose};
 use pinpose::raster::Mask;
 use pinpose::scene::{
@@ -154,7 +154,10 @@ impl BopFolder {
         ids.dedup();
         for id in ids {
             let path = self.models().join(format!("obj_{id:06}.ply"));
-            let object = scene.add_object(Arc::new(read_mesh(&named_file(&path)).unwrap().0));
+            let texture = path.with_extension("png");
+            let textures: Vec<NamedFile> =
+                texture.is_file().then(|| named_file(&texture)).into_iter().collect();
+            let object = scene.add_object(Arc::new(read_mesh_with(&named_file(&path), &textures).unwrap().0));
             let symmetries = &mut scene.object_mut(object).unwrap().symmetries;
             if let Some(info) = infos.get(&id) {
                 symmetries.discrete = info.symmetries_discrete.iter().map(|rows| pose_of_16(rows)).collect();

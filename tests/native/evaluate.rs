@@ -1,14 +1,14 @@
 //! `pinpose evaluate` against the definitions, computed independently with NumPy.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
+use pinpose::formats::export::write_npy;
 use pinpose::math::Pose;
-use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::support::{CAMERA_JSON, box_mesh, data_folder, empty_folder, flat_photo, numpy, pinpose};
+use crate::bop_folder::BopFolder;
+use crate::support::{CAMERA_JSON, Python, box_mesh, data_folder, empty_folder, flat_photo, numpy, pinpose};
 
 /// Both compute in f64 from the same numbers; what differs is the order of sums over some ten thousand vertices, and the
 /// arc cosine of a number near 1 (a rotation of a degree keeps nine digits).
@@ -17,20 +17,10 @@ const RELATIVE_TOLERANCE: f64 = 1e-6;
 /// Every so many poses also the errors that need all pairs of vertices or pictures.
 const SLOW_EVERY: usize = 15;
 
-#[derive(Deserialize)]
-struct Truth {
-    obj_id: u32,
-    #[serde(rename = "cam_R_m2c")]
-    rotation: [f64; 9],
-    #[serde(rename = "cam_t_m2c")]
-    translation_mm: [f64; 3],
-}
-
-/// A pose of lmo16 with one that is near it.
+/// A true pose with one that is near it.
 struct Case {
     photo: String,
     object: String,
-    mesh: PathBuf,
     truth: Pose,
     estimate: Pose,
 }
@@ -51,27 +41,23 @@ impl Noise {
     }
 }
 
-fn lmo_cases(folder: &Path) -> Vec<Case> {
-    let text = std::fs::read(folder.join("test/000002/scene_gt.json")).unwrap();
-    let truths: BTreeMap<u32, Vec<Truth>> = serde_json::from_slice(&text).unwrap();
+/// Up to some 15 degrees and 35 mm away.
+fn disturbed(pose: &Pose, noise: &mut Noise) -> Pose {
+    let turn = Pose::exp(noise.vector() * 0.15, DVec3::ZERO).rotation;
+    let turned = Pose { rotation: pose.rotation * turn, ..*pose };
+    turned.translated(noise.vector() * 20.0).renormalized()
+}
+
+fn cases(folder: &BopFolder, images: usize) -> Vec<(Case, u32, u32)> {
     let mut noise = Noise(0x9e37_79b9_7f4a_7c15);
     let mut cases = Vec::new();
-    for (image, truth) in
-        truths.iter().flat_map(|(image, truths)| truths.iter().map(move |truth| (image, truth)))
-    {
-        let rotation = DMat3::from_cols_array(&truth.rotation).transpose();
-        let (pose, _) = Pose::from_parts(rotation, DVec3::from_array(truth.translation_mm)).unwrap();
-        // Up to some 15 degrees and 35 mm.
-        let turn = Pose::exp(noise.vector() * 0.15, DVec3::ZERO).rotation;
-        let estimate =
-            Pose { rotation: pose.rotation * turn, ..pose }.translated(noise.vector() * 20.0).renormalized();
-        cases.push(Case {
-            photo: format!("{image:06}"),
-            object: format!("obj_{:06}", truth.obj_id),
-            mesh: folder.join(format!("models/obj_{:06}.ply", truth.obj_id)),
-            truth: pose,
-            estimate,
-        });
+    for (image, truths) in folder.truths().into_iter().take(images) {
+        for truth in truths {
+            let pose = truth.pose();
+            let (photo, object) = (format!("{image:06}"), format!("obj_{:06}", truth.obj_id));
+            let estimate = disturbed(&pose, &mut noise);
+            cases.push((Case { photo, object, truth: pose, estimate }, image, truth.obj_id));
+        }
     }
     cases
 }
@@ -98,7 +84,8 @@ fn evaluate(arguments: &[String]) -> Value {
 #[test]
 fn errors_are_those_of_numpy() {
     let (Some(lmo), Some(python)) = (data_folder("lmo16"), numpy()) else { return };
-    let cases = lmo_cases(&lmo);
+    let cases: Vec<Case> =
+        cases(&BopFolder(lmo.join("test/000002")), usize::MAX).into_iter().map(|(case, ..)| case).collect();
     assert_eq!(cases.len(), 122);
     let folder = empty_folder("evaluate");
     let write = |name: &str, pose: fn(&Case) -> Pose| {
@@ -126,17 +113,22 @@ fn errors_are_those_of_numpy() {
         .enumerate()
         .map(|(index, case)| {
             json!({
-                "mesh": case.mesh, "K": k, "width": 640, "height": 480, "symmetric": false, "symmetries": [],
+                "mesh": lmo.join(format!("models/{}.ply", case.object)), "K": k, "width": 640, "height": 480,
+                "depth": null, "symmetries": {"discrete": [], "continuous": []},
                 "truth": case.truth.to_rows(), "estimate": case.estimate.to_rows(), "slow": index % SLOW_EVERY == 0,
             })
         })
         .collect();
-    let list = folder.join("cases.json");
-    std::fs::write(&list, Value::Array(listed).to_string()).unwrap();
-    let expected = python.run("errors.py", &[&list.display().to_string()]);
-    let expected: Vec<Value> = serde_json::from_str(&expected).unwrap();
-    let largest = largest_difference(&cases, &found, &expected);
+    let expected = numpy_errors(&python, &folder, listed);
+    let (largest, compared) = largest_difference(&cases, &found, &expected);
+    assert!(compared > 122 * 7 + 9 * 14 - 1, "{compared} numbers are too few");
     println!("122 poses: largest relative difference from NumPy {largest:.1e}");
+
+    let schema = include_str!("../../src/cli/evaluate/evaluation.schema.json");
+    let schema: Value = serde_json::from_str(schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> = validator.iter_errors(&found).map(|error| error.to_string()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
 
     let same = evaluate(&["--truth".to_owned(), truth.clone(), "--json".to_owned(), truth, models, photos]);
     for (metric, summary) in same["summary"].as_object().unwrap() {
@@ -147,15 +139,81 @@ fn errors_are_those_of_numpy() {
     assert_eq!(same["recalls"]["AR_MSSD"], 1.0);
 }
 
-/// Checks every number that NumPy gave; the largest difference, relative.
-fn largest_difference(cases: &[Case], found: &Value, expected: &[Value]) -> f64 {
+fn numpy_errors(python: &Python, folder: &Path, listed: Vec<Value>) -> Vec<Value> {
+    let list = folder.join("cases.json");
+    std::fs::write(&list, Value::Array(listed).to_string()).unwrap();
+    serde_json::from_str(&python.run("errors.py", &[&list.display().to_string()])).unwrap()
+}
+
+/// The demo as a data set, with its depth maps and symmetries, against a results file.
+#[test]
+fn errors_with_depth_and_symmetries_are_those_of_numpy() {
+    let Some(python) = numpy() else { return };
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/demo/bop/test/000001");
+    let demo = BopFolder(path.clone());
+    let listed = cases(&demo, 2);
+    let folder = empty_folder("evaluate-demo");
+    let (scene, infos) = (demo.scene(), demo.model_infos());
+    let mut results = "scene_id,im_id,obj_id,score,R,t,time\n".to_owned();
+    let mut described = Vec::new();
+    for (case, image, object) in &listed {
+        let words = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+        let (rotation, translation) =
+            (case.estimate.rotation_rows().concat(), case.estimate.translation_mm.to_array());
+        results += &format!("1,{image},{object},1,{},{},-1\n", words(&rotation), words(&translation));
+        let photo = scene.photos.iter().find(|photo| photo.name.starts_with(&case.photo)).unwrap();
+        let model = scene.objects.iter().find(|candidate| candidate.name == case.object).unwrap();
+        let write = |name: &str, bytes: Vec<u8>| {
+            let path = folder.join(name);
+            std::fs::write(&path, bytes).unwrap();
+            path
+        };
+        let depth = photo.depth.as_ref().unwrap().in_mm().unwrap();
+        let depth: Vec<[f64; 1]> = depth.mm.iter().map(|mm| [f64::from(*mm)]).collect();
+        let mesh = &model.mesh.mesh;
+        let vertices: Vec<[f64; 3]> =
+            mesh.positions_mm().iter().map(|position| position.as_dvec3().to_array()).collect();
+        let faces: Vec<[f64; 3]> = mesh.triangles().iter().map(|triangle| triangle.map(f64::from)).collect();
+        let info = &infos[object];
+        let continuous = info
+            .symmetries_continuous
+            .iter()
+            .map(|symmetry| json!({"axis": symmetry.axis, "offset": symmetry.offset}));
+        described.push(json!({
+            "mesh": [
+                write(&format!("{object}-vertices.npy"), write_npy(&vertices)),
+                write(&format!("{object}-faces.npy"), write_npy(&faces)),
+            ],
+            "K": photo.camera.k_rows(), "width": photo.camera.width, "height": photo.camera.height,
+            "depth": write(&format!("{image}-depth.npy"), write_npy(&depth)),
+            "symmetries": {"discrete": info.symmetries_discrete, "continuous": continuous.collect::<Vec<_>>()},
+            "truth": case.truth.to_rows(), "estimate": case.estimate.to_rows(), "slow": true,
+        }));
+    }
+    let csv = folder.join("ours_demo-test.csv");
+    std::fs::write(&csv, results).unwrap();
+    let [truth, poses] = [path, csv].map(|path| path.display().to_string());
+    let found = evaluate(&["--truth".to_owned(), truth.clone(), "--json".to_owned(), poses]);
+    let expected = numpy_errors(&python, &folder, described);
+    let cases: Vec<Case> = listed.into_iter().map(|(case, ..)| case).collect();
+    let (largest, compared) = largest_difference(&cases, &found, &expected);
+    println!("10 poses with depth and symmetries: largest relative difference from NumPy {largest:.1e}");
+    assert!(compared >= 10 * 22, "{compared} numbers are too few");
+    assert_eq!(found["missing"].as_array().unwrap().len(), 5 * 14, "the other photos have no estimates");
+    let same = evaluate(&["--truth".to_owned(), truth.clone(), "--json".to_owned(), truth]);
+    assert_eq!(same["summary"]["mssd_mm"]["max"], 0.0);
+    assert_eq!((&same["recalls"]["AR_VSD"], &same["summary"]["add_mm"]["count"]), (&json!(1.0), &json!(80)));
+}
+
+/// Checks every number that NumPy gave; the largest difference, relative, and how many numbers there were.
+fn largest_difference(cases: &[Case], found: &Value, expected: &[Value]) -> (f64, usize) {
     let rows = found["poses"].as_array().unwrap();
     assert_eq!((rows.len(), expected.len()), (cases.len(), cases.len()));
     let mut largest = 0.0_f64;
     let mut compared = 0;
     for (case, expected) in cases.iter().zip(expected) {
         let is_it = |row: &&Value| {
-            row["photo"].as_str().unwrap().starts_with(&case.photo) && row["object"] == case.object.as_str()
+            row["photo"].as_str().unwrap().contains(&case.photo) && row["object"] == case.object.as_str()
         };
         let row = rows.iter().find(is_it).unwrap();
         for (name, expected) in expected.as_object().unwrap() {
@@ -176,8 +234,7 @@ fn largest_difference(cases: &[Case], found: &Value, expected: &[Value]) -> f64 
             }
         }
     }
-    assert!(compared > 122 * 7 + 9 * 14 - 1, "{compared} numbers are too few");
-    largest
+    (largest, compared)
 }
 
 /// A photo, a box, and truth with one pose; the folder.

@@ -16,7 +16,7 @@ use pinpose::scene::{PhotoAsset, Scene};
 use serde_json::Value;
 
 use crate::bop_folder::BopFolder;
-use crate::support::{data_folder, empty_folder, named_file, numpy};
+use crate::support::{data_folder, empty_folder, named_file, numpy, pinpose};
 
 /// What masks of two renderers have in common where the object is large enough for a ratio to mean much.
 const LEAST_IOU: f64 = 0.99;
@@ -69,6 +69,10 @@ fn the_demo_as_bop_is_what_it_was() {
             same_bytes(written.photo(image), original.photo(image));
             let depth = format!("depth/{image:06}.png");
             same_bytes(written.0.join(&depth), original.0.join(&depth));
+        }
+        for name in ["obj_000001.ply", "obj_000001.png", "obj_000004.ply"] {
+            let file = |folder: &BopFolder| std::fs::read(folder.models().join(name)).unwrap();
+            assert!(file(&written) == file(&original), "{name} is not the file that was opened");
         }
         for (id, info) in original.model_infos() {
             let ours = &written.model_infos()[&id];
@@ -190,6 +194,44 @@ fn lmo_comes_back_from_bop_with_its_poses_and_cameras() {
     assert!(results.lines().skip(1).all(|line| line.split(',').count() == 7 && line.ends_with(",-1")));
 }
 
+/// A data set that is opened, written and opened again, all by the command line, is the same: poses, cameras, symmetries,
+/// depth.
+#[test]
+fn a_data_set_survives_opening_and_writing() {
+    let lmo = data_folder("lmo16").map(|folder| (folder.join("test/000002"), 2, 122));
+    let demo = (demo(2).0, 2, 60);
+    for (number, (scene, scene_id, poses)) in [Some(demo), lmo].into_iter().flatten().enumerate() {
+        let out = empty_folder(&format!("survives-{number}"));
+        let convert = |from: &Path, to: &Path, rest: &[&str]| {
+            let [from, to] = [from, to].map(|path| path.display().to_string());
+            let output = pinpose(&[&["convert", &from, &to], rest].concat());
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        };
+        convert(&scene, &out.join("export"), &["--to", "bop"]);
+        let written = out.join("export/bop/test/000001");
+        convert(&scene, &out.join("first.json"), &[]);
+        convert(&written, &out.join("second.json"), &[]);
+        let [first, second] =
+            ["first.json", "second.json"].map(|name| crate::bop_folder::read_json::<Value>(&out.join(name)));
+        let mut compared = 0;
+        let list = |value: &Value, key: &str| value[key].as_array().unwrap().clone();
+        for (ours, theirs) in list(&second, "photos").iter().zip(list(&first, "photos")) {
+            assert_eq!(ours["K"], theirs["K"]);
+            assert_eq!(ours["depth"]["mm_per_unit"], theirs["depth"]["mm_per_unit"]);
+            for (ours, theirs) in list(ours, "poses").iter().zip(list(&theirs, "poses")) {
+                // Bit for bit: the first import has projected the rotations onto SO(3).
+                assert_eq!(ours["camera_from_object"], theirs["camera_from_object"]);
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, poses, "scene {scene_id}");
+        for (ours, theirs) in list(&second, "objects").iter().zip(list(&first, "objects")) {
+            assert_eq!((&ours["name"], &ours["symmetries"]), (&theirs["name"], &theirs["symmetries"]));
+            assert_eq!(ours["mesh_sha256"], theirs["mesh_sha256"], "the very file");
+        }
+    }
+}
+
 /// Every convention, through the script that comes with the files.
 #[test]
 fn the_script_projects_where_we_do() {
@@ -220,7 +262,7 @@ fn the_script_projects_where_we_do() {
         if number == 0 {
             let models = demo(1).models().display().to_string();
             let printed = run("pinpose.json", &[&models]);
-            assert_eq!(printed["poses"].as_array().unwrap().len(), 5 * 16, "the document has all photos");
+            assert_eq!(printed["poses"].as_array().unwrap().len(), 10, "of the chosen photos");
         }
     }
     println!("the script agrees; OpenCV: {opencv}");
@@ -397,9 +439,10 @@ fn pictures_hold_what_they_say() {
             seen += 1;
         }
         assert!(seen > ENOUGH_PIXELS, "{}: {seen}", object.name);
-        // The boxes' lines are in the object's colour.
-        let line = [0, 1].map(|axis| info["box_visible"][axis].as_u64().unwrap() as u32);
-        assert_eq!(boxes.get_pixel(line[0] + 5, line[1]).0, object.color.0, "{}", object.name);
+        // The upper side of the box is in the object's colour, but where another one's lines cross it.
+        let [x, y, width] = [0, 1, 2].map(|at| info["box_visible"][at].as_u64().unwrap() as u32);
+        let drawn = (x..x + width).filter(|x| boxes.get_pixel(*x, y).0 == object.color.0).count();
+        assert!(drawn as f64 > 0.9 * f64::from(width), "{}: {drawn} of {width}", object.name);
     }
 }
 

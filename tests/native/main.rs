@@ -12,6 +12,7 @@ mod demo_scene;
 mod documents;
 mod evaluate;
 mod export;
+mod export_dialog;
 mod gestures;
 mod gpu_and_cpu;
 mod images_corpus;

@@ -1,5 +1,6 @@
 //! `pinpose evaluate --truth T POSES…`: how far poses are from the truth, in all of the field's errors.
 
+mod poses;
 mod report;
 
 use std::path::PathBuf;
@@ -24,7 +25,7 @@ struct Options {
 
 pub fn run(parser: lexopt::Parser) -> Outcome {
     let Options { mut truth, poses, style } = read_options(parser)?;
-    let estimates = open::read_poses(&poses)?;
+    let estimates = poses::read_poses(&poses)?;
     // Photos and meshes may lie with either side; they are the same.
     truth.extend(estimates.other_files);
     let session = open::open_session(&truth)?;

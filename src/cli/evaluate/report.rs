@@ -5,6 +5,9 @@ use serde_json::{Map, Value, json};
 use crate::metrics::{ComparedPose, Comparison, Metric, Statistics, VSD_TAUS};
 use crate::scene::{ObjectId, PhotoId, Scene};
 
+/// One of the numbers that say something of many.
+type StatisticOf = fn(&Statistics) -> f64;
+
 /// Digits on screen: errors below a thousandth of their unit mean nothing to anybody.
 const DECIMALS: usize = 3;
 
@@ -19,7 +22,7 @@ pub fn text(scene: &Scene, comparison: &Comparison) -> String {
     let mut text = aligned(&rows) + "\n";
     let of_all: Vec<Option<Statistics>> =
         Metric::ALL.iter().map(|metric| statistics(&comparison.poses, metric)).collect();
-    let kinds: [(&str, fn(&Statistics) -> f64); 5] = [
+    let kinds: [(&str, StatisticOf); 5] = [
         ("mean", |all| all.mean),
         ("median", |all| all.median),
         ("p90", |all| all.p90),

@@ -66,11 +66,10 @@ impl LengthUnit {
         }
     }
 
-    /// How many of this unit one millimetre is.
-    pub fn per_mm(self) -> f64 {
+    pub fn in_mm(self) -> f64 {
         match self {
             Self::Millimetre => 1.0,
-            Self::Metre => 1e-3,
+            Self::Metre => 1000.0,
         }
     }
 }
@@ -99,7 +98,8 @@ impl Convention {
         };
         let mut rows = pose.to_rows();
         for row in rows.iter_mut().take(3) {
-            row[3] *= self.unit.per_mm();
+            // Divided: a product with 0.001 makes 0.7000000000000001 of 700.
+            row[3] /= self.unit.in_mm();
         }
         rows
     }
@@ -148,7 +148,7 @@ mod tests {
         let pose = Pose::exp(DVec3::new(0.3, -0.9, 0.4), DVec3::new(12.0, -30.0, 640.0));
         let (object, camera) = (DVec3::new(7.0, 8.0, -9.0), pose.transform_point(DVec3::new(7.0, 8.0, -9.0)));
         for convention in all() {
-            let scale = convention.unit.per_mm();
+            let scale = 1.0 / convention.unit.in_mm();
             let in_axes = match convention.axes {
                 CameraAxes::OpenCv => camera,
                 CameraAxes::OpenGl => DVec3::new(camera.x, -camera.y, -camera.z),

@@ -6,6 +6,7 @@
 mod bop;
 mod boxes;
 mod convention;
+mod meshes;
 mod names;
 mod npy;
 mod options;
@@ -17,6 +18,7 @@ mod readme;
 mod steps;
 mod stream;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use thiserror::Error;
@@ -60,8 +62,8 @@ pub struct ExportJob {
 impl ExportJob {
     /// Plans the export; nothing is drawn or encoded yet. The scene is a snapshot: what changes afterwards plays no part.
     pub fn new(scene: &Scene, view: &ViewSettings, options: ExportOptions) -> Self {
-        let document = Document::from_scene(scene, view, options.keep);
         let plan = Plan::new(scene.clone(), options);
+        let document = Document::from_scene(&plan.scene, view, plan.options.keep);
         let steps = steps(&plan);
         let bop = bop::Records::new(&plan);
         Self {
@@ -93,11 +95,23 @@ impl ExportJob {
 
     /// What the chosen formats cannot hold, in sentences.
     pub fn warnings(&self) -> Vec<String> {
-        if self.plan.options.parts.contains(&ExportPart::Bop) {
-            bop::warnings(&self.plan)
-        } else {
-            Vec::new()
+        let plan = &self.plan;
+        let has = |part: ExportPart| plan.options.parts.contains(&part);
+        let mut without_textures: BTreeSet<&str> = BTreeSet::new();
+        if has(ExportPart::Meshes) {
+            without_textures.extend(plan.textures_lost(plan.meshes.iter().zip(0..)));
         }
+        let mut warnings = Vec::new();
+        if has(ExportPart::Bop) {
+            let models = plan.models.iter().map(|model| (&model.mesh, model.object));
+            without_textures.extend(plan.textures_lost(models));
+            warnings.extend(bop::warnings(plan));
+        }
+        let lost = without_textures
+            .into_iter()
+            .map(|name| format!("{name}: the mesh is written without its texture"));
+        warnings.extend(lost);
+        warnings
     }
 
     /// The masks of what is placed in a photo, in the order of [`Plan::placed`]; kept until another photo's are asked for.

@@ -1,9 +1,16 @@
 //! Where each file of an export is, so that they can name one another.
 
+use super::meshes::companion_name;
 use super::plan::{PhotoPlan, Plan};
+use crate::scene::CompanionFile;
 
 pub(super) fn mesh(plan: &Plan, object: usize) -> String {
     format!("meshes/{}.ply", plan.object_name(object))
+}
+
+/// Beside the meshes that name it.
+pub(super) fn companion(file: &CompanionFile) -> String {
+    format!("meshes/{}", companion_name(file))
 }
 
 /// The convention is in the name: a matrix of its own says nothing.

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::meshes::{MeshPlan, mesh_plans};
 use super::names::{numbers_of, unique_names};
 use super::{ExportOptions, PhotoChoice};
 use crate::formats::Keep;
 use crate::math::Pose;
 use crate::raster::RasterItem;
-use crate::scene::{Annotation, AnnotationState, Object, Photo, Scene, file_stem};
+use crate::scene::{Annotation, AnnotationState, Object, Photo, PhotoId, Scene, file_stem};
 
 /// A scene, cut down to what is exported.
 #[derive(Debug)]
@@ -18,6 +19,8 @@ pub(super) struct Plan {
     pub objects: Vec<ObjectPlan>,
     /// Objects of one mesh in one frame are instances of one model.
     pub models: Vec<ModelPlan>,
+    /// Of each object, for one folder of all.
+    pub meshes: Vec<MeshPlan>,
 }
 
 #[derive(Debug)]
@@ -44,6 +47,7 @@ pub(super) struct ModelPlan {
     pub object: usize,
     /// BOP's `obj_id`.
     pub id: u32,
+    pub mesh: MeshPlan,
 }
 
 /// An object in a photo.
@@ -62,17 +66,15 @@ impl Placed<'_> {
 }
 
 impl Plan {
-    pub fn new(scene: Scene, options: ExportOptions) -> Self {
-        let chosen = |photo: &&Photo| match &options.photos {
-            PhotoChoice::All => true,
-            PhotoChoice::These(ids) => ids.contains(&photo.id),
-        };
-        let stems: Vec<&str> =
-            scene.photos.iter().filter(chosen).map(|photo| file_stem(&photo.name)).collect();
-        let indices =
-            scene.photos.iter().enumerate().filter(|(_, photo)| chosen(photo)).map(|(index, _)| index);
-        let photos = indices
-            .zip(unique_names(stems.iter().copied()))
+    pub fn new(mut scene: Scene, options: ExportOptions) -> Self {
+        if let PhotoChoice::These(chosen) = &options.photos {
+            let others: Vec<PhotoId> =
+                scene.photos.iter().map(|photo| photo.id).filter(|id| !chosen.contains(id)).collect();
+            others.into_iter().for_each(|id| scene.remove_photo(id));
+        }
+        let stems: Vec<&str> = scene.photos.iter().map(|photo| file_stem(&photo.name)).collect();
+        let names = unique_names(stems.iter().copied()).into_iter().enumerate();
+        let photos = names
             .zip(numbers_of(stems.iter().copied(), 0))
             .map(|((index, name), image_id)| PhotoPlan { index, name, image_id })
             .collect();
@@ -80,7 +82,8 @@ impl Plan {
         let names = unique_names(scene.objects.iter().map(|object| object.name.as_str()));
         let objects =
             names.into_iter().zip(model_of).map(|(name, model)| ObjectPlan { name, model }).collect();
-        Self { photos, objects, models, options, scene }
+        let meshes = mesh_plans(scene.objects.iter());
+        Self { photos, objects, models, meshes, options, scene }
     }
 
     /// The photo of a plan of this scene.
@@ -104,6 +107,15 @@ impl Plan {
     /// The name of an object in files.
     pub fn object_name(&self, index: usize) -> &str {
         self.objects.get(index).map_or("", |object| &object.name)
+    }
+
+    /// The objects whose textures cannot be written with their meshes.
+    pub fn textures_lost<'a>(
+        &'a self,
+        meshes: impl Iterator<Item = (&'a MeshPlan, usize)>,
+    ) -> impl Iterator<Item = &'a str> {
+        let objects = meshes.filter_map(|(mesh, at)| Some((mesh, self.scene.objects.get(at)?)));
+        objects.filter(|(mesh, object)| mesh.loses_textures(object)).map(|(_, object)| object.name.as_str())
     }
 
     /// BOP's `obj_id` of an object.
@@ -150,7 +162,13 @@ fn models(scene: &Scene) -> (Vec<ModelPlan>, Vec<usize>) {
     let stem =
         |&object: &usize| scene.objects.get(object).map_or("", |object| file_stem(&object.mesh.file_name));
     let ids = numbers_of(firsts.iter().map(stem), 1);
-    let models = firsts.iter().zip(ids).map(|(&object, id)| ModelPlan { object, id }).collect();
+    let meshes = mesh_plans(firsts.iter().filter_map(|&first| scene.objects.get(first)));
+    let models = firsts
+        .iter()
+        .zip(ids)
+        .zip(meshes)
+        .map(|((&object, id), mesh)| ModelPlan { object, id, mesh })
+        .collect();
     (models, model_of)
 }
 

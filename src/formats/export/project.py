@@ -49,11 +49,12 @@ def read_vertices(path):
         elif words[:1] == ["property"] and in_vertex:
             fields.append((words[2], TYPES[words[1]]))
     if ["format", "ascii", "1.0"] in header:
-        names = [name for name, _ in fields]
         rows = data[end:].decode("ascii").split("\n")[:count]
-        table = np.array([row.split() for row in rows], dtype=float)
-        return table[:, [names.index(axis) for axis in "xyz"]]
-    table = np.frombuffer(data, np.dtype(fields), count, end)
+        columns = dict(zip((name for name, _ in fields), np.array([row.split() for row in rows], dtype=float).T))
+        # Rounded to the type that the header gives, as every reader does.
+        table = {axis: columns[axis].astype(dict(fields)[axis]) for axis in "xyz"}
+    else:
+        table = np.frombuffer(data, np.dtype(fields), count, end)
     return np.stack([table[axis] for axis in "xyz"], axis=1).astype(float)
 
 

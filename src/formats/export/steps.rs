@@ -5,7 +5,6 @@ use super::pictures::{PhotoPictures, PictureKind, mask_png, pictures_json};
 use super::plan::{PhotoPlan, Plan};
 use super::{ExportJob, ExportPart, PROJECT_SCRIPT, paths, poses, readme, write_npy};
 use crate::formats::write_document;
-use crate::mesh::write_ply;
 use crate::photo::{decode, plain_extension, png_rgba};
 use crate::scene::Photo;
 
@@ -22,6 +21,8 @@ pub(super) enum Step {
     CameraNpy(usize),
     /// Index into the plan's objects.
     Mesh(usize),
+    /// And into its mesh's companions.
+    MeshCompanion(usize, usize),
     Picture(PictureKind, usize, Option<usize>),
     PictureIndex,
     Bop(BopStep),
@@ -58,7 +59,10 @@ pub(super) fn steps(plan: &Plan) -> Vec<Step> {
         }
     }
     if has(ExportPart::Meshes) {
-        steps.extend((0..plan.objects.len()).map(Step::Mesh));
+        for (object, mesh) in plan.meshes.iter().enumerate() {
+            steps.push(Step::Mesh(object));
+            steps.extend(mesh.companions().map(|at| Step::MeshCompanion(object, at)));
+        }
     }
     steps.extend(picture_steps(plan));
     if has(ExportPart::Bop) {
@@ -117,8 +121,14 @@ impl ExportJob {
                 Ok((paths::camera_npy(planned), write_npy(&photo.camera.k_rows())))
             }
             Step::Mesh(object) => {
-                let mesh = &self.plan.scene.objects.get(object).ok_or(GONE)?.mesh.mesh;
-                Ok((paths::mesh(&self.plan, object), write_ply(mesh)))
+                let mesh = self.plan.meshes.get(object).ok_or(GONE)?;
+                let file = mesh.file(self.plan.scene.objects.get(object).ok_or(GONE)?);
+                Ok((paths::mesh(&self.plan, object), file))
+            }
+            Step::MeshCompanion(object, at) => {
+                let object = self.plan.scene.objects.get(object).ok_or(GONE)?;
+                let file = object.mesh.companions.get(at).ok_or(GONE)?;
+                Ok((paths::companion(file), file.bytes.to_vec()))
             }
             Step::Picture(kind, photo, at) => self.picture(kind, photo, at),
             Step::PictureIndex => text("pictures.json", pictures_json(&self.pictures)),
@@ -158,6 +168,9 @@ impl ExportJob {
                 Ok(("bop/models/models_info.json".to_owned(), bop::models_info(&self.plan).into_bytes()))
             }
             BopStep::Model(model) => bop::model_file(&self.plan, model).ok_or_else(|| GONE.to_owned()),
+            BopStep::ModelCompanion(model, at) => {
+                bop::companion_file(&self.plan, model, at).ok_or_else(|| GONE.to_owned())
+            }
             BopStep::Photo(photo) => self.bop_photo(photo),
             BopStep::Depth(photo) => self.bop_depth(photo),
             BopStep::Mask(photo, at) => self.bop_mask("mask", photo, at),

@@ -2,8 +2,9 @@
 
     python3 errors.py CASES.json
 
-CASES is a list of {mesh, K, width, height, truth, estimate, symmetries, symmetric, slow}; K and poses are rows. Prints a list
-of errors. Those that need all pairs of vertices, or pictures, are left out where "slow" is false.
+CASES is a list of {mesh, K, width, height, depth, truth, estimate, symmetries, slow}; K and poses are rows, a mesh is an ascii
+PLY or [vertices.npy, faces.npy], depth a .npy in mm or null, symmetries are those of BOP's models_info.json. Prints a list of
+errors. Those that need all pairs of vertices, or pictures, are left out where "slow" is false.
 """
 
 import json
@@ -18,7 +19,10 @@ GRID_PER_PIXEL = 4096
 
 
 def read_vertices_and_faces(path):
-    """Of an ascii PLY whose faces are triangles."""
+    """Of an ascii PLY whose faces are triangles, or of two arrays."""
+    if isinstance(path, list):
+        vertices, faces = (np.load(part) for part in path)
+        return vertices, faces.astype(int)
     lines = open(path, encoding="utf-8", errors="replace").read().split("\n")
     end = lines.index("end_header")
     counts = {words[1]: int(words[2]) for words in map(str.split, lines[:end]) if words[:1] == ["element"]}
@@ -110,23 +114,42 @@ def fill(depth, corners, inverse, area, low, high, size, width):
     np.minimum.at(depth, at, (1.0 / value[inside]).astype(np.float32))
 
 
-def vsd(depth_truth, depth_estimate, K, diameter):
-    """Without a measured depth: everything is visible."""
+def expanded(symmetries):
+    """All transforms of BOP's symmetries: each discrete one after each of 315 turns about each axis."""
+    discrete = [np.eye(4)] + [np.reshape(rows, (4, 4)) for rows in symmetries["discrete"]]
+    turns = []
+    for symmetry in symmetries["continuous"]:
+        (x, y, z), offset = symmetry["axis"], np.array(symmetry["offset"])
+        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        steps = int(np.ceil(np.pi / 0.01))
+        for angle in 2 * np.pi * np.arange(steps) / steps:
+            turn = np.eye(4)
+            turn[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+            turn[:3, 3] = offset - turn[:3, :3] @ offset
+            turns.append(turn)
+    return [turn @ first for first in discrete for turn in turns or [np.eye(4)]]
+
+
+def vsd(depth_truth, depth_estimate, depth_test, K, diameter):
+    """What was not measured (0) hides nothing."""
     height, width = depth_truth.shape
     x, y = np.meshgrid(np.arange(width), np.arange(height))
     length = np.sqrt(((x - K[0, 2]) / K[0, 0]) ** 2 + ((y - K[1, 2]) / K[1, 1]) ** 2 + 1)
-    truth, estimate = depth_truth * length, depth_estimate * length
-    both, either = (truth > 0) & (estimate > 0), (truth > 0) | (estimate > 0)
+    truth, estimate, test = depth_truth * length, depth_estimate * length, depth_test * length
+    seen_truth = (truth > 0) & ((test == 0) | (truth - test <= DELTA_MM))
+    seen_estimate = (estimate > 0) & ((test == 0) | (estimate - test <= DELTA_MM) | seen_truth)
+    both, either = seen_truth & seen_estimate, seen_truth | seen_estimate
     part = np.abs(truth[both] - estimate[both]) / diameter
     return [(np.sum(part >= tau) + either.sum() - both.sum()) / either.sum() for tau in TAUS]
 
 
 def errors(case, meshes):
-    if case["mesh"] not in meshes:
-        meshes[case["mesh"]] = read_vertices_and_faces(case["mesh"])
-    vertices, faces = meshes[case["mesh"]]
+    key = str(case["mesh"])
+    if key not in meshes:
+        meshes[key] = read_vertices_and_faces(case["mesh"])
+    vertices, faces = meshes[key]
     truth, estimate, K = (np.array(case[key]) for key in ("truth", "estimate", "K"))
-    symmetries = [np.eye(4)] + [np.array(symmetry) for symmetry in case["symmetries"]]
+    symmetries = expanded(case["symmetries"])
     differences = moved(vertices, truth) - moved(vertices, estimate)
     pixel_differences = projected(vertices, truth, K) - projected(vertices, estimate, K)
     cosine = (np.trace(truth[:3, :3].T @ estimate[:3, :3]) - 1) / 2
@@ -148,10 +171,12 @@ def errors(case, meshes):
     }
     if case["slow"]:
         found["adi_mm"] = nearest_distances(moved(vertices, truth), moved(vertices, estimate)).mean()
-        found["ad_mm"] = found["adi_mm"] if case["symmetric"] else found["add_mm"]
+        found["ad_mm"] = found["adi_mm"] if len(symmetries) > 1 else found["add_mm"]
         found["diameter_mm"] = diameter(vertices)
         depths = [render(vertices, faces, pose, K, case["width"], case["height"]) for pose in (truth, estimate)]
-        found["vsd_by_tau"] = vsd(*depths, K, found["diameter_mm"])
+        size = (case["height"], case["width"])
+        test = np.zeros(size) if case["depth"] is None else np.load(case["depth"]).reshape(size)
+        found["vsd_by_tau"] = vsd(*depths, test, K, found["diameter_mm"])
         found["vsd"] = np.mean(found["vsd_by_tau"])
         masks = [depth > 0 for depth in depths]
         found["cus"] = 1 - (masks[0] & masks[1]).sum() / (masks[0] | masks[1]).sum()

@@ -12,7 +12,7 @@ use super::plan::Plan;
 use crate::photo::{decode_depth, png_gray16};
 use crate::scene::{DepthMap, Photo};
 
-pub(super) use models::{camera_json, model_file, models_info};
+pub(super) use models::{camera_json, companion_file, model_file, models_info};
 pub(super) use records::Records;
 
 /// A file of the dataset.
@@ -22,6 +22,8 @@ pub(super) enum BopStep {
     ModelsInfo,
     /// Index into the plan's models.
     Model(usize),
+    /// And into its mesh's companions.
+    ModelCompanion(usize, usize),
     /// Indices into the plan's photos, and into what is placed in one.
     Photo(usize),
     Depth(usize),
@@ -38,7 +40,10 @@ pub(super) enum BopStep {
 /// Every file of the dataset, photos one after the other.
 pub(super) fn steps(plan: &Plan) -> Vec<BopStep> {
     let mut steps = vec![BopStep::Camera, BopStep::ModelsInfo];
-    steps.extend((0..plan.models.len()).map(BopStep::Model));
+    for (index, model) in plan.models.iter().enumerate() {
+        steps.push(BopStep::Model(index));
+        steps.extend(model.mesh.companions().map(|at| BopStep::ModelCompanion(index, at)));
+    }
     for (index, planned) in plan.photos.iter().enumerate() {
         steps.push(BopStep::Photo(index));
         let Some(photo) = plan.photo(planned) else { continue };
@@ -109,6 +114,6 @@ pub(super) fn image_path(plan: &Plan, folder: &str, image_id: u32, extension: &s
 
 /// The results file's name: `METHOD_DATASET-SPLIT.csv`, neither of the two with an underscore or a hyphen of its own.
 pub(super) fn results_path(plan: &Plan) -> String {
-    let letters: String = plan.scene.name.chars().filter(|c| c.is_ascii_alphanumeric()).collect();
+    let letters: String = plan.scene.name.chars().filter(char::is_ascii_alphanumeric).collect();
     format!("bop/pinpose_{}-test.csv", if letters.is_empty() { "scene" } else { &letters })
 }

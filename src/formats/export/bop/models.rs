@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::super::meshes::companion_name;
 use super::super::plan::{ModelPlan, Plan};
 use super::depth_scale;
 use crate::math::{Bounds, Pose};
-use crate::mesh::{PointTree, write_ply};
+use crate::mesh::PointTree;
 
 #[derive(Serialize)]
 struct ModelInfo {
@@ -84,7 +85,14 @@ fn flat(pose: &Pose) -> [f64; 16] {
 pub(in super::super) fn model_file(plan: &Plan, model: usize) -> Option<(String, Vec<u8>)> {
     let model = plan.models.get(model)?;
     let object = plan.scene.objects.get(model.object)?;
-    Some((format!("bop/models/obj_{:06}.ply", model.id), write_ply(&object.mesh.mesh)))
+    Some((format!("bop/models/obj_{:06}.ply", model.id), model.mesh.file(object)))
+}
+
+/// A texture that a model names.
+pub(in super::super) fn companion_file(plan: &Plan, model: usize, at: usize) -> Option<(String, Vec<u8>)> {
+    let object = plan.scene.objects.get(plan.models.get(model)?.object)?;
+    let file = object.mesh.companions.get(at)?;
+    Some((format!("bop/models/{}", companion_name(file)), file.bytes.to_vec()))
 }
 
 /// The camera of the first photo; `None` where there is none.
