@@ -86,7 +86,7 @@ fn gather_pose(
 ) {
     let mut rows = *rows;
     for row in rows.iter_mut().take(3) {
-        row[3] /= convention.unit.per_mm();
+        row[3] *= convention.unit.in_mm();
     }
     let pose = match Pose::from_rows(&rows) {
         Ok((pose, _)) => pose,

@@ -215,12 +215,11 @@ fn open_brackets(text: &str) -> i64 {
     let mut open = 0;
     for c in text.chars() {
         match (quote, c) {
-            (Some(mark), _) if mark == c => quote = None,
-            (Some(_), _) => {}
+            (Some(mark), _) => quote = Some(mark).filter(|mark| *mark != c),
             (None, '"' | '\'') => quote = Some(c),
             (None, '[' | '{') => open += 1,
             (None, ']' | '}') => open -= 1,
-            _ => {}
+            (None, _) => {}
         }
     }
     open

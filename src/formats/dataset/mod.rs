@@ -151,9 +151,11 @@ impl DatasetMesh {
 
 /// Tells by the names of files what a folder or an archive is; `None` where it holds nothing that could be opened together.
 pub fn recognise(listing: &Arc<Listing>) -> Option<Recognised> {
-    let layouts: [fn(&Arc<Listing>) -> Option<Recognised>; 4] =
-        [megapose::recognise, bop::recognise, linemod::recognise, folder::recognise];
-    layouts.into_iter().find_map(|layout| layout(listing))
+    // A folder of photos is what is left when it is nothing else.
+    megapose::recognise(listing)
+        .or_else(|| bop::recognise(listing))
+        .or_else(|| linemod::recognise(listing))
+        .or_else(|| folder::recognise(listing))
 }
 
 impl Recognised {
