@@ -236,8 +236,13 @@ impl Dataset {
     fn take_poses(&mut self, mut poses: Incoming) {
         let name = &poses.file_name;
         self.guessed.extend(poses.remarks.drain(..).map(|remark| format!("{name}: {remark}")));
-        if poses.pose_count() > 0 {
-            self.found.push(counted(poses.pose_count(), "pose", &format!(" in {name}")));
+        let count = poses.pose_count();
+        if count > 0 {
+            self.found.push(counted(count, "pose", &format!(" in {name}")));
+        }
+        // Foreign cameras are with the photos by now; one of our own documents has more to say.
+        let is_ours = |photo: &IncomingPhoto| matches!(photo.camera, Some(IncomingCamera::Exact(..)));
+        if count > 0 || !poses.references.is_empty() || poses.photos.iter().any(is_ours) {
             self.poses.push(poses);
         }
     }
