@@ -79,7 +79,8 @@ fn choices(ui: &mut Ui, session: &Session, state: &mut State) {
     let count = session.scene().photos.len();
     ui.label(RichText::new("Photos").strong());
     ui.horizontal(|ui| {
-        ui.radio_value(&mut state.only_shown, false, format!("All {count}"));
+        let all = if count == 1 { "All".to_owned() } else { format!("All {count}") };
+        ui.radio_value(&mut state.only_shown, false, all);
         ui.add_enabled_ui(session.photo().is_some(), |ui| {
             ui.radio_value(&mut state.only_shown, true, "The one that is shown");
         });

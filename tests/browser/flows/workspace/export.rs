@@ -20,7 +20,8 @@ pub fn export(context: &mut Context) -> anyhow::Result<()> {
     let file = page.download(PATIENCE)?;
     ensure!(file.name.ends_with("-export.zip"), "{} is no archive", file.name);
     let mut archive = ZipArchive::new(Cursor::new(&file.bytes[..]))?;
-    let names: Vec<String> = archive.file_names().map(str::to_owned).collect();
+    let names: Vec<String> =
+        archive.file_names().map(|name| name.map(Into::into)).collect::<Result<_, _>>()?;
     println!("   {} files, {} bytes", names.len(), file.bytes.len());
     for wanted in
         ["poses.json", "poses.csv", "project.py", "scene_gt.json", "scene_gt_info.json", "models_info.json"]
