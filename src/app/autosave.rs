@@ -35,7 +35,7 @@ pub enum Finished {
     Saved {
         first: bool,
     },
-    /// The scene was changed in another window: nothing was saved.
+    /// Another window has the scene, or has changed it: nothing was saved.
     ChangedElsewhere,
     Failed(String),
 }
@@ -56,6 +56,8 @@ struct Keeper {
     saving: bool,
     /// While a scene is on its way in, nothing is saved.
     held: bool,
+    /// Another window writes the scene: a change goes into a copy.
+    is_lent: bool,
     finished: Option<Finished>,
     failure: Option<String>,
 }
@@ -78,6 +80,7 @@ impl Autosave {
             stored_ms: None,
             saving: false,
             held: false,
+            is_lent: false,
             finished: None,
             failure: None,
         };
@@ -98,6 +101,11 @@ impl Autosave {
         if !self.keeper.borrow().may_save() {
             return;
         }
+        if self.keeper.borrow().is_lent {
+            self.keeper.borrow_mut().finished = Some(Finished::ChangedElsewhere);
+            ctx.request_repaint();
+            return;
+        }
         let due_ms = (self.changed_at_ms + QUIET_MS).min(self.unsaved_since_ms + LATEST_MS);
         if now_ms >= due_ms {
             save(&self.keeper);
@@ -110,7 +118,7 @@ impl Autosave {
     pub fn save_now(&mut self, session: &Session, now_ms: f64) {
         self.notice_changes(session, now_ms);
         self.keeper.borrow_mut().failed_revision = None;
-        if self.keeper.borrow().may_save() {
+        if self.keeper.borrow().may_save() && !self.keeper.borrow().is_lent {
             save(&self.keeper);
         }
     }
@@ -144,8 +152,14 @@ impl Autosave {
         keeper.saved_revision = session.settled_revision();
         keeper.failed_revision = None;
         keeper.held = false;
+        keeper.is_lent = false;
         keeper.finished = None;
         keeper.failure = None;
+    }
+
+    /// Another window writes this scene. What is changed here has to go into a copy.
+    pub fn lend(&mut self) {
+        self.keeper.borrow_mut().is_lent = true;
     }
 
     /// What is in the session is not what is stored: save it with the next tick.
@@ -219,7 +233,7 @@ impl Keeper {
 /// The page is about to go: its document is put aside at once, and a save is begun, which may or may not come to its end.
 fn leave(keeper: &Rc<RefCell<Keeper>>) {
     let keeper_now = keeper.borrow();
-    if keeper_now.held {
+    if keeper_now.held || keeper_now.is_lent {
         return;
     }
     let Some(unsaved) = keeper_now.unsaved() else { return };

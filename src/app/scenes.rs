@@ -55,6 +55,8 @@ enum Arrived {
     CannotLoad(String),
     Listed(Vec<SceneSummary>),
     Usage(StorageUse),
+    /// Whether this window is the one that writes the scene.
+    Claimed(SceneId, bool),
     /// A scene was renamed, copied or deleted.
     Changed,
     Problem(String),
@@ -154,6 +156,7 @@ impl PinPose {
             StartWith::Nothing => {}
             StartWith::Example => {
                 self.scenes.is_trial = true;
+                self.claim_scene();
                 self.loading.fetch_example();
             }
             StartWith::LastOpen => {
@@ -288,6 +291,14 @@ impl PinPose {
             // What is stored stays as it is, for a program that can read it.
             None => self.autosave.begin(platform::new_scene_id(), None, &self.session),
         }
+        self.claim_scene();
+    }
+
+    /// One window writes a scene.
+    fn claim_scene(&self) {
+        let id = self.autosave.id();
+        let claiming = self.scenes.storage.claim(&id);
+        self.scenes.when_done(claiming, move |is_ours| Arrived::Claimed(id, is_ours), Arrived::Problem);
     }
 
     fn after_saving(&mut self, next: Next) {
@@ -339,6 +350,7 @@ impl PinPose {
         self.fresh_session();
         self.scenes.is_trial = false;
         self.autosave.begin(platform::new_scene_id(), None, &self.session);
+        self.claim_scene();
     }
 
     fn begin_copy(&mut self, name: String) {
@@ -346,6 +358,7 @@ impl PinPose {
         self.scenes.is_trial = false;
         self.autosave.begin(platform::new_scene_id(), None, &self.session);
         self.autosave.mark_unsaved();
+        self.claim_scene();
         self.save_now();
     }
 
@@ -386,6 +399,8 @@ impl PinPose {
             }
             Arrived::Listed(list) => self.scenes.list = list,
             Arrived::Usage(usage) => self.scenes.usage = Some(usage),
+            Arrived::Claimed(id, false) if id == self.autosave.id() => self.borrow_scene(),
+            Arrived::Claimed(..) => {}
             Arrived::Changed => self.scenes.refresh(),
             Arrived::Problem(problem) => self.notify(Notice::error(problem)),
         }
@@ -437,11 +452,19 @@ impl PinPose {
         }
     }
 
-    /// Another window has saved the same scene: both stay.
+    fn borrow_scene(&mut self) {
+        self.autosave.lend();
+        let title = self.open_title();
+        self.notify(Notice::warning(format!(
+            "{title} is open in another window. What you change here goes on in a copy"
+        )));
+    }
+
+    /// Another window has the same scene: both stay.
     fn go_on_in_copy(&mut self) {
         let name = self.scenes.name_of_copy(&self.open_title());
         self.notify(Notice::warning(format!(
-            "This scene was changed in another window. What you do here goes on as \"{name}\""
+            "This scene is in use in another window. What you do here goes on as \"{name}\""
         )));
         self.begin_copy(name);
     }

@@ -13,6 +13,7 @@ pub struct MemoryStorage {
     kept: RefCell<Kept>,
     journals: RefCell<BTreeMap<SceneId, Journal>>,
     failure: RefCell<Option<String>>,
+    held_elsewhere: RefCell<BTreeSet<SceneId>>,
 }
 
 #[derive(Debug, Default)]
@@ -45,6 +46,11 @@ impl MemoryStorage {
     /// From now on saving fails for this reason, or works again.
     pub fn fail_with(&self, reason: Option<&str>) {
         *self.failure.borrow_mut() = reason.map(str::to_owned);
+    }
+
+    /// From now on another window has this scene.
+    pub fn hold_elsewhere(&self, id: &SceneId) {
+        self.held_elsewhere.borrow_mut().insert(id.clone());
     }
 
     /// The content of how many files is stored.
@@ -131,6 +137,10 @@ impl Storage for MemoryStorage {
             return Box::pin(async { Err(reason) });
         }
         ready(self.kept.borrow_mut().save(id, &saved, last_seen_ms))
+    }
+
+    fn claim(&self, id: &SceneId) -> StorageFuture<bool> {
+        ready(!self.held_elsewhere.borrow().contains(id))
     }
 
     fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()> {

@@ -164,6 +164,9 @@ pub trait Storage {
     /// saved since is not written over. `None` writes in any case.
     fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome>;
 
+    /// Makes this program the one that writes a scene, until it claims another one or ends. False: another window has it.
+    fn claim(&self, id: &SceneId) -> StorageFuture<bool>;
+
     fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()>;
 
     /// A second scene with the same content.

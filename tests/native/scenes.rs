@@ -288,6 +288,24 @@ fn two_windows_of_one_scene_lose_nothing() {
 }
 
 #[test]
+fn a_scene_that_is_open_elsewhere_is_said_at_once_and_not_written() {
+    let storage = Rc::new(MemoryStorage::default());
+    let mut one = Program::start(&storage);
+    one.load(&[flat_photo("photo.png", 64, 48)]);
+    let before = stored(&storage);
+    storage.hold_elsewhere(&before[0].id);
+    let mut other = Program::start(&storage);
+    other.wait("it is said", |state| state.notices.iter().any(|notice| notice.contains("open in another")));
+    assert_eq!(stored(&storage), before, "looking changes nothing");
+    other.change_opacity(0.5);
+    let state = other.wait("it goes on in a copy", |state| state.saved);
+    assert!(state.document_json.contains("photo copy"));
+    let after = stored(&storage);
+    assert_eq!(titles(&after), ["photo copy", "photo"]);
+    assert_eq!(after[1], before[0]);
+}
+
+#[test]
 fn a_scene_that_cannot_be_read_is_left_as_it_is() {
     let storage = Rc::new(MemoryStorage::default());
     let mut program = Program::start(&storage);

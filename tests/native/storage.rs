@@ -177,6 +177,20 @@ fn what_another_window_has_saved_is_not_written_over() {
 }
 
 #[test]
+fn one_program_writes_a_scene() {
+    let folder = std::env::temp_dir().join(format!("pinpose-claims-{}", std::process::id()));
+    let [mine, theirs] = [(); 2].map(|()| FolderStorage::new(folder.clone()));
+    assert!(now(mine.claim(&id("a"))) && now(mine.claim(&id("a"))), "asking twice changes nothing");
+    assert!(!now(theirs.claim(&id("a"))));
+    assert!(now(theirs.claim(&id("b"))), "another scene is free");
+    assert!(now(mine.claim(&id("c"))));
+    assert!(now(theirs.claim(&id("a"))), "whoever goes to another scene gives the first one back");
+    drop(mine);
+    assert!(now(theirs.claim(&id("c"))), "and so does whoever ends");
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn a_journal_is_kept_by_scene_and_goes_with_it() {
     on_both("journal", |storage| {
         let journal = Journal { changed_at_ms: 1_700_000_000_000.125, json: "{\n}".to_owned() };

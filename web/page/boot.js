@@ -26,6 +26,7 @@ window.pinposePage = {
   updateReady: false,
   createWorker,
   applyUpdate,
+  claim,
   crashed: showCrash,
 };
 
@@ -139,6 +140,28 @@ async function loadModule() {
     headers: { 'Content-Type': 'application/wasm' },
   });
   return WebAssembly.compileStreaming(counted);
+}
+
+// Makes this page the only one that has `name`, until it claims another name or goes; false if another page keeps it. A page
+// that is just going, as on a reload, is waited for.
+const CLAIM_PATIENCE_MS = 1500;
+let claimed = { name: null, release() {} };
+let claims = 0;
+function claim(name) {
+  if (!navigator.locks || claimed.name === name) return Promise.resolve(true);
+  claimed.release();
+  claimed = { name: null, release() {} };
+  const number = ++claims;
+  return new Promise((resolve) => {
+    // What comes when something else was claimed meanwhile is given back at once.
+    const hold = () =>
+      new Promise((release) => {
+        if (number !== claims) return release(resolve(false));
+        claimed = { name, release };
+        resolve(true);
+      });
+    navigator.locks.request(name, { signal: AbortSignal.timeout(CLAIM_PATIENCE_MS) }, hold).catch(() => resolve(false));
+  });
 }
 
 // A worker that is loading the module already; it takes `{id, request}` at once, and answers when it is ready.

@@ -2,6 +2,7 @@
 
 mod record;
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
@@ -18,11 +19,13 @@ use record::{AssetLine, Record};
 /// `last_open`. A scene is renamed into place as a whole and last, so it never speaks of a file that is not there.
 pub struct FolderStorage {
     folder: PathBuf,
+    /// The lock of the scene that this program writes; it ends with the program, however that ends.
+    claim: RefCell<Option<(SceneId, fs::File)>>,
 }
 
 impl FolderStorage {
     pub fn new(folder: PathBuf) -> Self {
-        Self { folder }
+        Self { folder, claim: RefCell::default() }
     }
 
     fn scenes(&self) -> PathBuf {
@@ -39,6 +42,24 @@ impl FolderStorage {
 
     fn journal_path(&self, id: &SceneId) -> PathBuf {
         self.folder.join("journals").join(file_name(id.as_str()))
+    }
+
+    fn claim_now(&self, id: &SceneId) -> io::Result<bool> {
+        if self.claim.borrow().as_ref().is_some_and(|(claimed, _)| claimed == id) {
+            return Ok(true);
+        }
+        *self.claim.borrow_mut() = None;
+        let folder = self.folder.join("locks");
+        fs::create_dir_all(&folder)?;
+        let file = fs::File::create(folder.join(file_name(id.as_str())))?;
+        match file.try_lock() {
+            Ok(()) => {
+                *self.claim.borrow_mut() = Some((id.clone(), file));
+                Ok(true)
+            }
+            Err(fs::TryLockError::WouldBlock) => Ok(false),
+            Err(fs::TryLockError::Error(error)) => Err(error),
+        }
     }
 
     fn record(&self, id: &SceneId) -> io::Result<Option<Record>> {
@@ -121,6 +142,7 @@ impl FolderStorage {
     fn delete_now(&self, id: &SceneId) -> io::Result<()> {
         remove_if_there(&self.scene_path(id))?;
         remove_if_there(&self.journal_path(id))?;
+        remove_if_there(&self.folder.join("locks").join(file_name(id.as_str())))?;
         self.remove_unneeded()
     }
 
@@ -158,6 +180,10 @@ impl Storage for FolderStorage {
 
     fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome> {
         done(self.save_now(id, saved, last_seen_ms), "the scene cannot be saved")
+    }
+
+    fn claim(&self, id: &SceneId) -> StorageFuture<bool> {
+        done(self.claim_now(id), "whether another window has the scene is not known")
     }
 
     fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()> {

@@ -109,6 +109,14 @@ impl Storage for IndexedDb {
         })
     }
 
+    fn claim(&self, id: &SceneId) -> StorageFuture<bool> {
+        let claim = super::page_claim(&format!("pinpose-scene-{}", id.as_str()));
+        Box::pin(async move {
+            let is_ours = wasm_bindgen_futures::JsFuture::from(claim).await;
+            is_ours.map(|is_ours| is_ours.is_truthy()).map_err(|error| describe(&error))
+        })
+    }
+
     fn rename(&self, id: &SceneId, name: &str) -> StorageFuture<()> {
         let (id, name) = (id.clone(), name.to_owned());
         self.write("the scene cannot be renamed", async move |transaction| {

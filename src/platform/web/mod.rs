@@ -25,6 +25,8 @@ extern "C" {
     fn page_apply_update();
     #[wasm_bindgen(js_namespace = pinposePage, js_name = createWorker, catch)]
     fn page_create_worker() -> Result<web_sys::Worker, JsValue>;
+    #[wasm_bindgen(js_namespace = pinposePage, js_name = claim)]
+    fn page_claim(name: &str) -> js_sys::Promise;
     #[wasm_bindgen(thread_local_v2, js_namespace = pinposePage, js_name = buildVersion)]
     static BUILD_VERSION: JsValue;
     #[wasm_bindgen(thread_local_v2, js_namespace = pinposePage, js_name = wasmBytes)]
