@@ -11,6 +11,8 @@ use crate::formats::PosesAs;
 use crate::formats::dataset::{Dataset, Recognised};
 
 const WIDTH: f32 = 560.0;
+/// The choices below the lists, the buttons, and the dialog's own edges.
+const ROOM_FOR_CHOICES: f32 = 330.0;
 const BUTTON_SIZE: Vec2 = Vec2::new(92.0, 28.0);
 /// Lines of one list; the others are counted.
 const MOST_LINES: usize = 60;
@@ -50,12 +52,9 @@ pub fn draw(ctx: &Context, view: &DatasetView<'_>, requests: &mut Vec<DatasetReq
         match view.progress {
             Some((done, all)) => progress(ui, done, all, requests),
             None => {
-                // Buttons stay on the screen, however long the lists are.
-                let height = (screen.height() - 220.0).max(120.0);
-                ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                    ui.set_width(ui.available_width());
-                    choices(ui, view, requests);
-                });
+                parts::draw(ui, view, requests);
+                contents(ui, view);
+                choices(ui, view, requests);
                 ui.add_space(6.0);
                 ui.separator();
                 buttons(ui, view, requests);
@@ -73,29 +72,41 @@ fn title(ui: &mut Ui, view: &DatasetView<'_>) {
     ui.add_space(6.0);
 }
 
-fn choices(ui: &mut Ui, view: &DatasetView<'_>, requests: &mut Vec<DatasetRequest>) {
-    parts::draw(ui, view, requests);
-    let dataset = match view.dataset {
-        Some(Ok(dataset)) => dataset,
+/// What was found, guessed and missing, or why that is not known.
+fn contents(ui: &mut Ui, view: &DatasetView<'_>) {
+    match view.dataset {
+        Some(Ok(dataset)) => {
+            // What there is to choose and the buttons stay on the screen, however long the lists are.
+            let taken = ui.cursor().top() - ui.min_rect().top();
+            let height = ui.ctx().content_rect().height() - taken - ROOM_FOR_CHOICES;
+            ScrollArea::vertical().id_salt("contents").max_height(height.max(64.0)).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                list(ui, "Found", &dataset.found);
+                list(ui, "Guessed", &dataset.guessed);
+                list(ui, "Missing", &dataset.missing);
+            });
+        }
         Some(Err(problem)) => {
             ui.add_space(8.0);
             let color = theme::error(ui.visuals());
             ui.add(egui::Label::new(RichText::new(problem).color(color)).wrap());
-            return;
         }
         None => {
             ui.add_space(8.0);
             ui.horizontal(|ui| {
-                ui.spinner();
+                if !view.chosen.is_empty() {
+                    ui.spinner();
+                }
                 let what = if view.chosen.is_empty() { "Choose a part." } else { "Reading what is in it…" };
                 ui.label(RichText::new(what).weak());
             });
-            return;
         }
-    };
-    list(ui, "Found", &dataset.found);
-    list(ui, "Guessed", &dataset.guessed);
-    list(ui, "Missing", &dataset.missing);
+    }
+}
+
+/// What becomes of that which can be done without.
+fn choices(ui: &mut Ui, view: &DatasetView<'_>, requests: &mut Vec<DatasetRequest>) {
+    let Some(Ok(dataset)) = view.dataset else { return };
     if dataset.pose_count() > 0 {
         poses_choice(ui, view.poses_as, requests);
     }

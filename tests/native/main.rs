@@ -5,6 +5,7 @@
 mod annotator;
 mod chrome;
 mod cli;
+mod dataset_dialog;
 mod datasets;
 mod demo_scene;
 mod documents;
@@ -15,7 +16,9 @@ mod layers;
 mod linemod;
 mod looks;
 mod mesh_corpus;
+mod opening;
 mod panels;
+mod program;
 mod scene_view;
 mod scenes;
 mod scenes_dialog;

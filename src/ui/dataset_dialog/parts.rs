@@ -10,8 +10,11 @@ use crate::ui::scenes_dialog::words::size_text;
 use crate::ui::theme;
 
 const ROW_HEIGHT: f32 = 24.0;
-/// More rows scroll.
+/// More rows scroll; fewer on a low screen.
 const MOST_ROWS: f32 = 7.0;
+const LEAST_ROWS: f32 = 2.0;
+/// What the rest of the dialog needs.
+const ROOM_FOR_THE_REST: f32 = 500.0;
 /// From so many on there are buttons for all and none.
 const MANY: usize = 4;
 
@@ -23,7 +26,7 @@ pub fn draw(ui: &mut Ui, view: &DatasetView<'_>, requests: &mut Vec<DatasetReque
     }
     ui.horizontal(|ui| {
         ui.vertical(|ui| {
-            theme::group_title(ui, &format!("Parts ({} of {})", view.chosen.len(), choices.len()))
+            theme::group_title(ui, &format!("Parts ({} of {})", view.chosen.len(), choices.len()));
         });
         if choices.len() >= MANY {
             ui.with_layout(Layout::right_to_left(Align::Max), |ui| {
@@ -37,7 +40,10 @@ pub fn draw(ui: &mut Ui, view: &DatasetView<'_>, requests: &mut Vec<DatasetReque
         }
     });
     let spacing = ui.spacing().item_spacing.y;
-    let area = ScrollArea::vertical().id_salt("parts").max_height((ROW_HEIGHT + spacing) * MOST_ROWS);
+    let row_height = ROW_HEIGHT + spacing;
+    let fitting = (ui.ctx().content_rect().height() - ROOM_FOR_THE_REST) / row_height;
+    let rows = fitting.floor().clamp(LEAST_ROWS, MOST_ROWS);
+    let area = ScrollArea::vertical().id_salt("parts").max_height(row_height * rows);
     area.auto_shrink([false, true]).show_rows(ui, ROW_HEIGHT, choices.len(), |ui, rows| {
         for (index, choice) in choices.iter().enumerate().skip(rows.start).take(rows.len()) {
             row(ui, index, choice, view.chosen, requests);
