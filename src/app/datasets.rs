@@ -113,14 +113,15 @@ impl Datasets {
         Some(Busy { text, can_cancel: true })
     }
 
-    /// Leaves out what has no dialog.
-    pub fn cancel(&mut self) {
-        if self.listing.take().is_some() {
-            self.is_cancelled.set(true);
-        }
-        if matches!(self.stage, Stage::Loose(_)) {
+    /// Leaves out what has no dialog; true if there was something.
+    pub fn cancel(&mut self) -> bool {
+        let is_listing = self.listing.take().is_some();
+        self.is_cancelled.set(is_listing);
+        let is_loose = matches!(self.stage, Stage::Loose(_));
+        if is_loose {
             self.stage = Stage::Idle;
         }
+        is_listing || is_loose
     }
 
     /// For the dialog.

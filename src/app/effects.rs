@@ -29,6 +29,7 @@ impl PinPose {
             Effect::FitPhoto => self.show(None),
             Effect::Notify(notice) => self.notify(notice),
             Effect::AskForPose
+            | Effect::AskForExport
             | Effect::TogglePalette
             | Effect::ToggleShortcuts
             | Effect::TogglePanels

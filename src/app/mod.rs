@@ -9,6 +9,7 @@ mod datasets;
 mod depth_maps;
 mod effects;
 mod events;
+mod exporting;
 mod input;
 mod jobs;
 mod loading;
@@ -49,6 +50,7 @@ pub struct PinPose {
     pictures: pictures::Pictures,
     mask_layer: mask_layer::MaskLayer,
     depth_maps: depth_maps::DepthMaps,
+    exporting: exporting::Exporting,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
@@ -95,6 +97,7 @@ impl PinPose {
             pictures: pictures::Pictures::default(),
             mask_layer: mask_layer::MaskLayer::default(),
             depth_maps: depth_maps::DepthMaps::default(),
+            exporting: exporting::Exporting::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
@@ -140,6 +143,7 @@ impl eframe::App for PinPose {
         self.update_mask_layer();
         self.want_thumbnails();
         self.make_pictures(ctx);
+        self.tick_export();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
@@ -150,6 +154,7 @@ impl eframe::App for PinPose {
         let open_scene = self.autosave.id();
         let opening = || ui::Busy { text: "Opening…".to_owned(), can_cancel: false };
         let busy = self.loading.busy(platform::now_ms()).or_else(|| self.datasets.busy());
+        let busy = busy.or_else(|| self.exporting.busy());
         let busy = busy.or_else(|| self.scenes.is_opening().then(opening));
         let around = ui::Surroundings {
             hands: &self.hands,
@@ -179,9 +184,10 @@ impl eframe::App for PinPose {
             self.ui_state.preferences.store();
         }
         if asked.cancel_loading {
-            self.loading.cancel();
-            self.datasets.cancel();
-            self.notify(Notice::info("Cancelled: what was not read yet is left out"));
+            self.cancel_work();
+        }
+        if let Some(request) = asked.export {
+            self.start_export(request);
         }
         self.place_views();
         if let Some(moved) = asked.scene_move {
@@ -211,6 +217,20 @@ impl eframe::App for PinPose {
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
         [0.0, 0.0, 0.0, 1.0]
+    }
+}
+
+impl PinPose {
+    /// Of what the user waits for, the part that was shown.
+    fn cancel_work(&mut self) {
+        if self.loading.is_busy() {
+            self.loading.cancel();
+            self.notify(Notice::info("Cancelled: what was not read yet is left out"));
+        } else if self.datasets.cancel() {
+            self.notify(Notice::info("Cancelled: nothing was opened"));
+        } else if self.exporting.cancel() {
+            self.notify(Notice::info("Cancelled: nothing more is exported"));
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The command line: one file per verb. Exit code 0 done, 1 bad input (one line on stderr per problem), 2 bad usage.
 
 mod convert;
+mod evaluate;
 mod inspect;
 mod open;
 mod render;
@@ -14,10 +15,17 @@ PinPose, a 6D object pose annotator
 
 pinpose                              open the window
 pinpose inspect IN… [--json]         say what files, folders and zips are, what is in them, guessed and missing
-pinpose convert IN… OUT              read files or folders, write poses (.json) or a workspace (.zip)
+pinpose convert IN… OUT              read files or folders, write poses (.json, .csv) or a workspace (.zip)
+        [--to json,poses,npy,csv,meshes,bop,masks,visible_masks,depth,nocs,boxes]
+        with it OUT is a folder, or a .zip of what is asked for
+        [--axes opencv|opengl] [--unit mm|m] [--direction camera_from_object|object_from_camera]
+        [--photo NAME]… [--all-poses]   of poses, npy and csv; some photos alone; untouched poses too
 pinpose render IN… --out FOLDER      draw each photo with its objects
         [--kind overlay|silhouette|mask|visible_mask|depth] [--json]
         one PNG per photo, for masks and silhouettes one per object
+pinpose evaluate --truth T POSES… [--json | --csv]
+        how far poses are from the truth: rotation, translation, ADD, ADI, AD, MSSD, MSPD, projection, VSD, CUS;
+        --truth may come several times; photos and meshes are given with either
 pinpose --help | --version
 ";
 
@@ -56,6 +64,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
         lexopt::Arg::Value(verb) => match verb.to_str() {
             Some("inspect") => inspect::run(parser),
             Some("convert") => convert::run(parser),
+            Some("evaluate") => evaluate::run(parser),
             Some("render") => render::run(parser),
             _ => Err(Failure::Usage(format!("there is no verb \"{}\"", verb.to_string_lossy()))),
         },

@@ -61,7 +61,7 @@ impl Archive {
         let index = self.index_of(path).ok_or_else(|| at("it is not there".to_owned()))?;
         let entry = self.zip.by_index(index).map_err(|error| at(error.to_string()))?;
         let (packed, declared) = (entry.compressed_size(), entry.size());
-        let most = packed.saturating_mul(MAX_RATIO).max(HARMLESS_BYTES).min(MAX_FILE_BYTES);
+        let most = packed.saturating_mul(MAX_RATIO).clamp(HARMLESS_BYTES, MAX_FILE_BYTES);
         if declared > most {
             return Err(at(format!("{packed} bytes would unpack to {declared}, which is not done")));
         }

@@ -134,6 +134,8 @@ struct PoseEntry {
     changed_at_ms: f64,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     camera_changed: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    score: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -19,6 +19,8 @@ pub enum FormatError {
          (fx, fy, cx, cy, width, height) or its matrix with numpy.save"
     )]
     Pickle,
+    #[error("more than {megabytes} MiB of text: no camera and no poses of photos that somebody annotates")]
+    TooMuchText { megabytes: usize },
     #[error("the file is empty")]
     Empty,
     #[error("not text: the bytes from {byte} on are not UTF-8")]

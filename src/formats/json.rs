@@ -3,16 +3,26 @@
 use serde_json::Value;
 
 use super::{
-    FormatError, Incoming, NamedFile, Parsed, bop, camera, megapose, pose_array, read_document, sixdpat,
-    vision6d,
+    FormatError, Incoming, NamedFile, Parsed, bop, camera, megapose, own_poses, pose_array, read_document,
+    sixdpat, vision6d,
 };
+
+/// Poses of a thousand photos with twenty objects each take a third of it. A value takes up to sixteen times its text in
+/// memory.
+const MAX_BYTES: usize = 32 << 20;
 
 /// Reads a camera, poses or a document of ours.
 pub(super) fn parse_json(file: &NamedFile) -> Result<Parsed, FormatError> {
     let (name, bytes) = (file.name.as_str(), &*file.bytes);
+    if bytes.len() > MAX_BYTES {
+        return Err(FormatError::TooMuchText { megabytes: MAX_BYTES >> 20 });
+    }
     let value: Value = serde_json::from_slice(bytes).map_err(FormatError::json)?;
     if value.is_array() {
         return parse_list(name, bytes, &value);
+    }
+    if value.get("format").is_some_and(|format| format == own_poses::FORMAT) {
+        return own_poses::read_poses_json(name, bytes).map(Parsed::Poses);
     }
     if value.get("format").is_some() {
         let document = read_document(bytes)?;
@@ -42,8 +52,7 @@ fn parse_list(name: &str, bytes: &[u8], value: &Value) -> Result<Parsed, FormatE
         return megapose::object_data_incoming(name, bytes).map(Parsed::Poses);
     }
     match pose_array::array_of_json(value) {
-        Some(array) if array.shape == [3, 3] => camera::read_matrix_array(name, &array).map(Parsed::Camera),
-        Some(array) => pose_array::read_pose_array(name, &array).map(Parsed::Poses),
+        Some(array) => super::parse_array(name, &array),
         None => Err(FormatError::at(
             "the list",
             "a 3×3 camera matrix, 4×4 poses or MegaPose's objects with \"label\" expected",

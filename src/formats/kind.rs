@@ -16,7 +16,7 @@ pub enum FileKind {
     Yaml,
     /// BOP's results.
     Csv,
-    /// Text that begins with numbers: a camera's matrix.
+    /// Text that begins with numbers: a camera's matrix or a pose.
     Matrix,
     /// Python objects, which are never opened.
     Pickle,

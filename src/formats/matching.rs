@@ -92,6 +92,7 @@ impl Incoming {
                     source: pose.source,
                     changed_at_ms: pose.changed_at_ms.unwrap_or(now_ms),
                     camera_changed: false,
+                    score: pose.score,
                 };
                 scene.annotations.insert((photo, object), annotation);
                 outcome.applied += 1;

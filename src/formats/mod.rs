@@ -9,6 +9,7 @@ mod companions;
 pub mod dataset;
 mod document;
 mod error;
+pub mod export;
 mod file_key;
 mod gather;
 mod incoming;
@@ -17,6 +18,7 @@ mod kind;
 mod matching;
 mod megapose;
 mod npy;
+mod own_poses;
 mod pose_array;
 mod pose_text;
 mod sixdpat;
@@ -64,21 +66,28 @@ pub fn parse_text_or_archive(file: &NamedFile, kind: FileKind) -> Result<Parsed,
         FileKind::Workspace => Ok(Parsed::Workspace(read_workspace(bytes)?)),
         FileKind::Vision6dTruth => Ok(Parsed::Poses(vision6d::read_ground_truth(name, text(bytes)?)?)),
         FileKind::Json => json::parse_json(file),
-        FileKind::Npy => parse_npy(name, bytes),
+        FileKind::Npy => parse_array(name, &npy::read_npy(bytes)?),
         FileKind::Yaml => Ok(Parsed::Camera(camera::read_opencv_yaml(name, text(bytes)?)?)),
-        FileKind::Csv => Ok(Parsed::Poses(bop::read_results(name, text(bytes)?)?)),
-        FileKind::Matrix => Ok(Parsed::Camera(camera::read_matrix_text(name, text(bytes)?)?)),
+        FileKind::Csv => parse_csv(name, text(bytes)?).map(Parsed::Poses),
+        FileKind::Matrix => parse_array(name, &camera::read_matrix_text(text(bytes)?)?),
         FileKind::Pickle => Err(FormatError::Pickle),
         FileKind::Photo | FileKind::Mesh | FileKind::Unknown => Err(FormatError::Unknown),
     }
 }
 
-fn parse_npy(name: &str, bytes: &[u8]) -> Result<Parsed, FormatError> {
-    let array = npy::read_npy(bytes)?;
-    if array.shape == [3, 3] {
-        return camera::read_matrix_array(name, &array).map(Parsed::Camera);
+fn parse_csv(name: &str, text: &str) -> Result<Incoming, FormatError> {
+    if own_poses::is_poses_csv(text) {
+        return own_poses::read_poses_csv(name, text);
     }
-    pose_array::read_pose_array(name, &array).map(Parsed::Poses)
+    bop::read_results(name, text)
+}
+
+/// A 3×3 is a camera, a 4×4 a pose.
+fn parse_array(name: &str, array: &npy::NpyArray) -> Result<Parsed, FormatError> {
+    if array.shape == [3, 3] {
+        return camera::read_matrix_array(name, array).map(Parsed::Camera);
+    }
+    pose_array::read_pose_array(name, array).map(Parsed::Poses)
 }
 
 fn text(bytes: &[u8]) -> Result<&str, FormatError> {

@@ -8,8 +8,14 @@ use super::FormatError;
 /// Files nest three deep.
 const MAX_DEPTH: usize = 32;
 
+/// The poses of Linemod's largest sequence take a quarter of it. A value takes up to sixteen times its text in memory.
+const MAX_BYTES: usize = 16 << 20;
+
 /// Reads a document as the JSON it could have been.
 pub fn read_yaml(text: &str) -> Result<Value, FormatError> {
+    if text.len() > MAX_BYTES {
+        return Err(FormatError::TooMuchText { megabytes: MAX_BYTES >> 20 });
+    }
     let mut parser = Parser { lines: lines_of(text), next: 0 };
     let Some(first) = parser.peek() else { return Ok(Value::Null) };
     let indent = first.indent;
@@ -209,12 +215,11 @@ fn open_brackets(text: &str) -> i64 {
     let mut open = 0;
     for c in text.chars() {
         match (quote, c) {
-            (Some(mark), _) if mark == c => quote = None,
-            (Some(_), _) => {}
+            (Some(mark), _) => quote = Some(mark).filter(|mark| *mark != c),
             (None, '"' | '\'') => quote = Some(c),
             (None, '[' | '{') => open += 1,
             (None, ']' | '}') => open -= 1,
-            _ => {}
+            (None, _) => {}
         }
     }
     open

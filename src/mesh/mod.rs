@@ -15,6 +15,7 @@ mod off;
 mod paint;
 mod painted;
 mod ply;
+mod point_tree;
 mod ray_cast;
 mod stl;
 #[cfg(test)]
@@ -36,6 +37,7 @@ pub use error::{Format, MeshError, Place};
 pub use load::{LoadedMesh, load};
 pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};
 pub use paint::{Material, Paint};
+pub use point_tree::PointTree;
 pub use ray_cast::RayHit;
 pub use textures::MAX_TEXTURE_SIDE_PX;
 pub use write::write_ply;

@@ -5,12 +5,15 @@
 
 mod clip;
 mod mask;
+mod runs;
+mod silhouette;
 mod triangle;
 
 use crate::math::{Intrinsics, Pose};
 use crate::mesh::Mesh;
 
 pub use mask::Mask;
+pub use silhouette::{MeasuredDepth, Silhouette, VISIBILITY_DELTA_MM, silhouettes};
 
 /// A mesh to be drawn.
 #[derive(Debug, Clone, Copy)]

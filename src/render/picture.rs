@@ -234,9 +234,9 @@ impl Picture {
         self.occluder.is_some() && self.surroundings.is_none() && !self.look.x_ray
     }
 
-    /// Objects that others hide are outlined too.
+    /// What others hide is outlined too, or what the scene hides: nobody shall look for an object that is behind a wall.
     pub(super) fn outlines_hidden(&self) -> bool {
-        self.outlines() && self.look.x_ray && self.items.len() > 1
+        self.outlines() && (self.occludes() || self.look.x_ray && self.items.len() > 1)
     }
 
     pub(super) fn lines(&self) -> &[Line3] {

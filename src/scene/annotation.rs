@@ -32,6 +32,8 @@ pub struct Annotation {
     pub changed_at_ms: f64,
     /// The photo's intrinsics changed after the pose was set: it wants a second look.
     pub camera_changed: bool,
+    /// How sure the program was that estimated an imported pose, in that program's own terms.
+    pub score: Option<f64>,
 }
 
 impl Annotation {
@@ -42,6 +44,7 @@ impl Annotation {
             source: PoseSource::Manual,
             changed_at_ms,
             camera_changed: false,
+            score: None,
         }
     }
 }

@@ -22,7 +22,7 @@ use crate::math::{Intrinsics, Pose};
 pub use annotation::{Annotation, AnnotationState, PoseSource};
 pub use asset::{CompanionFile, MeshAsset, PhotoAsset, Sha256};
 pub use color::{Rgb, free_object_color, mask_color, object_color, reference_color};
-pub use depth_map::DepthMap;
+pub use depth_map::{DepthInMm, DepthMap};
 pub use look::{Layers, Look, OverlayMode, PhotoAdjustment};
 pub use mask::{Mask, MaskId};
 pub use mesh_frame::{MeshFrame, MeshFrameError};

@@ -92,6 +92,7 @@ fn carry(scene: &mut Scene, from: PhotoId, to: PhotoId, now_ms: f64) {
                 state: AnnotationState::Carried,
                 changed_at_ms: now_ms,
                 camera_changed: false,
+                score: None,
                 ..annotation
             };
             scene.annotations.insert((to, object), carried);

@@ -20,6 +20,7 @@ pub enum Effect {
     CopyText(String),
     /// The clipboard can be read in answer to a key alone; else the user is given a field to paste into.
     AskForPose,
+    AskForExport,
     NewScene,
     ShowScenes,
     SaveNow,

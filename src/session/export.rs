@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::apply::Applied;
 use super::{CommandError, CommandId, Effect, Notice, PictureKind, PictureRequest, Session};
+use crate::formats::export::safe_file_name;
 use crate::formats::{Keep, PoseText, write_document, write_pose_text, write_workspace};
 
 impl Session {
@@ -74,8 +75,4 @@ impl Session {
         };
         format!("{}-{otherwise}", safe_file_name(name))
     }
-}
-
-fn safe_file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }

@@ -56,6 +56,7 @@ impl Session {
             }
         }
         self.keep_selection_valid();
+        self.record_imports(&before.scene);
         if self.scene != before.scene {
             self.history.push("Add files", before);
             self.touched();
@@ -240,6 +241,7 @@ impl Session {
                 return Err(CommandError::Failed("that is no answer to the open question".to_owned()));
             }
         };
+        self.record_imports(&before.scene);
         if self.scene != before.scene {
             self.history.push("Import poses", before);
         }

@@ -264,6 +264,7 @@ impl Session {
                 source,
                 changed_at_ms: now_ms,
                 camera_changed: false,
+                score: None,
             };
             self.scene.annotations.insert(target, annotation);
         }
@@ -281,6 +282,21 @@ impl Session {
             if let Some(entry) = self.log_entry(target, label) {
                 self.log.push(entry);
             }
+        }
+    }
+
+    /// The same of poses that came from a file, unless it were so many that nobody could look back at anything else.
+    pub(super) fn record_imports(&mut self, before: &Scene) {
+        const MOST_LINES: usize = 200;
+        let is_new = |(target, annotation): &(&Target, &Annotation)| {
+            annotation.source == PoseSource::Imported && before.annotations.get(*target) != Some(*annotation)
+        };
+        let targets: Vec<Target> =
+            self.scene.annotations.iter().filter(is_new).map(|(target, _)| *target).collect();
+        if targets.len() <= MOST_LINES {
+            let entries: Vec<LogEntry> =
+                targets.into_iter().filter_map(|target| self.log_entry(target, "Import")).collect();
+            entries.into_iter().for_each(|entry| self.log.push(entry));
         }
     }
 

@@ -165,6 +165,27 @@ impl Session {
     }
 }
 
+impl Session {
+    /// Of a command that switches something: whether it is on.
+    pub fn is_on(&self, id: CommandId) -> bool {
+        let look = self.look();
+        match id {
+            CommandId::PhotoView => self.panes.arrangement == Arrangement::Photo,
+            CommandId::SceneView => self.panes.arrangement == Arrangement::Scene,
+            CommandId::SplitView => self.panes.arrangement == Arrangement::Split,
+            CommandId::ToggleOutline => look.outline,
+            CommandId::ToggleXRay => look.x_ray,
+            CommandId::ToggleWipe => look.wipe.is_some(),
+            CommandId::ToggleDifference => look.difference,
+            CommandId::ToggleGizmo => self.panes.gizmo,
+            CommandId::MoveTool => self.tool() == Tool::Move,
+            CommandId::RotateTool => self.tool() == Tool::Rotate,
+            CommandId::ToggleNudgeFrame => self.nudge_settings().frame == NudgeFrame::Object,
+            _ => false,
+        }
+    }
+}
+
 /// What only the world outside can do.
 fn effect_of(id: CommandId) -> Option<Effect> {
     Some(match id {
@@ -183,6 +204,7 @@ fn effect_of(id: CommandId) -> Option<Effect> {
         CommandId::SaveScene => Effect::SaveNow,
         CommandId::SaveSceneAs => Effect::AskSaveAs,
         CommandId::PastePose => Effect::AskForPose,
+        CommandId::ExportFiles => Effect::AskForExport,
         CommandId::RenameObject => Effect::RenameSelected,
         CommandId::ZoomToObject => Effect::ZoomToObject,
         CommandId::FitPhoto => Effect::FitPhoto,

@@ -94,6 +94,7 @@ commands![
     (ImportCamera, "import_camera", File, "Import camera…", "Intrinsics for the photos", None, always),
     (ImportPoses, "import_poses", File, "Import poses…", "To go on from, or to compare with", None, always),
     (OpenWorkspace, "open_workspace", File, "Open workspace…", "A zip with photos, meshes and poses", None, always),
+    (ExportFiles, "export", File, "Export…", "Poses in any convention, a BOP dataset, masks, depth, boxes: of one photo or all", ctrl_alt("E"), needs_content),
     (ExportPoses, "export_poses", File, "Export poses (JSON)", "Download the poses of all photos as JSON", ctrl("E"), needs_content),
     (ExportOverlay, "export_overlay", File, "Export overlay (PNG)", "The photo with the meshes over it, at the photo's resolution", None, needs_photo),
     (ExportMask, "export_mask", File, "Export mask (PNG)", "The selected object's silhouette, white on black", None, needs_selected_pose),

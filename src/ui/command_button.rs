@@ -26,7 +26,7 @@ pub fn command_item(
     commands: &mut Vec<Command>,
 ) {
     let info = id.info();
-    let mut button = Button::new(text.unwrap_or(info.text));
+    let mut button = Button::new(text.unwrap_or(info.text)).selected(session.is_on(id));
     if let Some(shortcut) = Keymap::of(ui.ctx()).text(id) {
         button = button.shortcut_text(shortcut);
     }

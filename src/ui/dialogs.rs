@@ -2,7 +2,7 @@
 
 use egui::{Button, Id, Key, Modal, Modifiers, RichText, Ui, Vec2};
 
-use super::{Dialog, UiState, palette, paste_dialog, shortcuts_sheet, theme};
+use super::{Asked, Dialog, UiState, export_dialog, palette, paste_dialog, shortcuts_sheet, theme};
 use crate::formats::{Incoming, PosesAs};
 use crate::session::{Answer, Command, Question, Session};
 
@@ -29,7 +29,8 @@ impl FitCount {
     }
 }
 
-pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, commands: &mut Vec<Command>) {
+pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, asked: &mut Asked) {
+    let commands = &mut asked.commands;
     if let Some(question) = session.question() {
         ask(ctx, session, question, &mut state.fit_count, commands);
         return;
@@ -44,6 +45,9 @@ pub fn draw(ctx: &egui::Context, session: &Session, state: &mut UiState, command
             shortcuts_sheet::draw(ctx, &mut state.preferences, &mut state.shortcuts_sheet)
         }
         Some(Dialog::PastePose) => paste_dialog::draw(ctx, session, &mut state.paste_dialog, commands),
+        Some(Dialog::Export) => {
+            export_dialog::draw(ctx, session, &mut state.export_dialog, &mut asked.export)
+        }
     };
     if is_closed {
         state.open = None;

@@ -2,10 +2,10 @@
 
 use egui::{Button, Ui};
 
-use super::command_button::command_button;
+use super::command_button::command_item;
 use super::scenes_dialog::words;
-use super::{Asked, Keymap, Preferences, SceneRequest, Surroundings, ThemeChoice};
-use crate::session::{Command, CommandId, Session};
+use super::{Asked, Preferences, SceneRequest, Surroundings, ThemeChoice};
+use crate::session::{CommandId, Session};
 
 /// What a menu has between two lines.
 type Group = &'static [CommandId];
@@ -32,6 +32,7 @@ pub const MENUS: [MenuPlan; 5] = [
                 CommandId::OpenWorkspace,
             ],
             &[
+                CommandId::ExportFiles,
                 CommandId::ExportPoses,
                 CommandId::ExportOverlay,
                 CommandId::ExportMask,
@@ -136,10 +137,10 @@ pub fn draw(
             if *group == NUDGES {
                 ui.menu_button("Nudge", |ui| {
                     ui.set_min_width(220.0);
-                    items(ui, group, session, &preferences.keymap, asked);
+                    items(ui, group, session, asked);
                 });
             } else {
-                items(ui, group, session, &preferences.keymap, asked);
+                items(ui, group, session, asked);
             }
             if group.contains(&CommandId::SaveSceneAs) {
                 recent_scenes(ui, around, asked);
@@ -151,16 +152,9 @@ pub fn draw(
     });
 }
 
-fn items(ui: &mut Ui, group: Group, session: &Session, keymap: &Keymap, asked: &mut Asked) {
+fn items(ui: &mut Ui, group: Group, session: &Session, asked: &mut Asked) {
     for id in group {
-        let mut button = Button::new(id.info().text);
-        if let Some(shortcut) = keymap.text(*id) {
-            button = button.shortcut_text(shortcut);
-        }
-        if command_button(ui, button, id.info(), session) {
-            asked.commands.push(Command::Run(*id));
-            ui.close();
-        }
+        command_item(ui, session, *id, None, &mut asked.commands);
     }
 }
 

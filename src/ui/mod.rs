@@ -3,6 +3,7 @@
 mod command_button;
 mod dataset_dialog;
 mod dialogs;
+mod export_dialog;
 mod icons;
 mod keymap;
 mod menus;
@@ -28,6 +29,7 @@ use crate::platform::{SceneId, SceneSummary, StorageUse};
 use crate::session::{Command, Effect, Session};
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
+pub use export_dialog::ExportRequest;
 pub use keymap::{Binding, Keymap, Refusal};
 pub use preferences::{DragModifier, ModifierKey, ModifierMap, Preferences, ThemeChoice};
 pub use scenes_dialog::SceneRequest;
@@ -52,6 +54,7 @@ pub struct UiState {
     palette: palette::State,
     shortcuts_sheet: shortcuts_sheet::State,
     paste_dialog: paste_dialog::State,
+    export_dialog: export_dialog::State,
     fit_count: dialogs::FitCount,
     strip: strip::State,
     /// Where the photo view and the scene view were in the last frame; `None` where they were not on screen.
@@ -66,6 +69,7 @@ pub enum Dialog {
     Shortcuts,
     Palette,
     PastePose,
+    Export,
 }
 
 impl UiState {
@@ -86,6 +90,7 @@ impl UiState {
     /// Carries out what the interface can do by itself; gives back the rest.
     pub fn take_effect(&mut self, effect: Effect, ctx: &egui::Context) -> Option<Effect> {
         match effect {
+            Effect::AskForExport => self.open = Some(Dialog::Export),
             Effect::AskForPose => self.open = Some(Dialog::PastePose),
             Effect::TogglePalette => self.toggle(Dialog::Palette),
             Effect::ToggleShortcuts => self.toggle(Dialog::Shortcuts),
@@ -157,6 +162,7 @@ pub struct Asked {
     pub scene_move: Option<SceneMove>,
     pub apply_update: bool,
     pub cancel_loading: bool,
+    pub export: Option<ExportRequest>,
 }
 
 /// Draws a whole frame.
@@ -195,7 +201,7 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
             viewport::draw(ui, session, around, state, &mut asked);
         }
     });
-    dialogs::draw(ui.ctx(), session, state, &mut asked.commands);
+    dialogs::draw(ui.ctx(), session, state, &mut asked);
     if let Some(dataset) = &around.dataset {
         dataset_dialog::draw(ui.ctx(), dataset, &mut asked.dataset_requests);
     }

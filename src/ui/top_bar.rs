@@ -128,7 +128,7 @@ fn status(ui: &mut Ui, session: &Session, around: &Surroundings<'_>, asked: &mut
         asked.apply_update = true;
     }
     if let Some(busy) = &around.busy {
-        if busy.can_cancel && ui.button("Cancel").on_hover_text("Leave out what is not read yet").clicked() {
+        if busy.can_cancel && ui.button("Cancel").on_hover_text("Stop this; what is done stays").clicked() {
             asked.cancel_loading = true;
         }
         ui.add(egui::Label::new(RichText::new(&busy.text).weak()).truncate());

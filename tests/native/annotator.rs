@@ -385,6 +385,17 @@ fn poses_are_copied_from_another_photo() {
 }
 
 #[test]
+fn imported_poses_are_in_the_history() {
+    let mut session = small_session();
+    let truth =
+        format!("{}\nbox <-> photo\n1 0 0 5\n0 1 0 6\n0 0 1 700\n0 0 0 1\n", crate::support::CAMERA_JSON);
+    drop_files(&mut session, &[text_file("truth.txt", &truth)], Some(PosesAs::Annotations));
+    let [line] = session.log() else { panic!("{:?}", session.log()) };
+    assert_eq!((line.label, line.source), ("Import", PoseSource::Imported));
+    assert_eq!(line.camera_from_object.translation_mm, DVec3::new(5.0, 6.0, 700.0));
+}
+
+#[test]
 fn another_object_of_a_spaced_mesh_is_spaced_too() {
     let mut session = small_session();
     let object = target(&session).1;

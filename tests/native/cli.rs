@@ -1,26 +1,14 @@
 //! The command line as a user runs it.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
 
 use serde_json::Value;
 
-use crate::support::{CAMERA_JSON, box_mesh, data_folder, flat_photo};
-
-fn pinpose(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_pinpose")).args(arguments).output().unwrap()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::remove_dir_all(&folder).ok();
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
+use crate::support::{CAMERA_JSON, box_mesh, data_folder, empty_folder, flat_photo, pinpose};
 
 /// A photo, a mesh, a camera and a pose in a folder.
 fn small_folder(name: &str) -> PathBuf {
-    let folder = folder(name);
+    let folder = empty_folder(name);
     for file in [flat_photo("photo.png", 640, 480), box_mesh("box.obj")] {
         std::fs::write(folder.join(file.name), &file.bytes).unwrap();
     }
@@ -44,7 +32,7 @@ fn inspect_says_what_files_are() {
 
 #[test]
 fn bad_input_is_one_line_per_problem_and_exit_code_1() {
-    let folder = folder("bad");
+    let folder = empty_folder("bad");
     std::fs::write(folder.join("broken.png"), b"\x89PNG\r\n\x1a\n").unwrap();
     std::fs::write(folder.join("empty.ply"), b"").unwrap();
     let paths = ["broken.png", "empty.ply"].map(|name| folder.join(name).display().to_string());
@@ -76,9 +64,45 @@ fn convert_goes_through_a_workspace_without_loss() {
 }
 
 #[test]
+fn convert_writes_folders_archives_and_single_files() {
+    let folder = small_folder("convert-to");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let inputs = ["photo.png", "box.obj", "truth.txt"].map(path);
+    let run = |arguments: &[&str]| {
+        let inputs = inputs.iter().map(String::as_str);
+        let output = pinpose(
+            &["convert"].into_iter().chain(inputs).chain(arguments.iter().copied()).collect::<Vec<_>>(),
+        );
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    run(&[&path("out"), "--to", "bop,npy", "--axes", "opengl", "--unit", "m", "--photo", "photo"]);
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let truth: Value = serde_json::from_str(&read("out/bop/test/000001/scene_gt.json")).unwrap();
+    assert_eq!(truth["0"][0]["cam_t_m2c"], serde_json::json!([5.0, 6.0, 700.0]), "BOP has one convention");
+    assert!(folder.join("out/npy/photo-box-camera_from_object_opengl_m.npy").is_file());
+    let poses: Value = serde_json::from_str(&read("out/poses.json")).unwrap();
+    assert_eq!(poses["photos"][0]["poses"][0]["matrix"][2][3], -0.7);
+
+    run(&[&path("out.zip"), "--to", "csv,meshes"]);
+    let archive = zip::ZipArchive::new(std::fs::File::open(folder.join("out.zip")).unwrap()).unwrap();
+    let names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
+    assert!(
+        names.contains(&"poses.csv".to_owned()) && names.contains(&"meshes/box.ply".to_owned()),
+        "{names:?}"
+    );
+    run(&[&path("poses.csv")]);
+    assert_eq!(read("poses.csv").lines().count(), 2);
+
+    let status = |arguments: &[&str]| pinpose(&[&["convert", &inputs[0]], arguments].concat()).status.code();
+    assert_eq!(status(&[&path("out"), "--to", "docx"]), Some(2));
+    assert_eq!(status(&[&path("out"), "--to", "bop", "--axes", "up"]), Some(2));
+    assert_eq!(status(&[&path("out"), "--to", "bop", "--photo", "nowhere"]), Some(1));
+}
+
+#[test]
 fn render_draws_masks_and_overlays_of_linemod() {
     let (Some(linemod), Some(_)) = (data_folder("linemod10"), crate::support::renderer()) else { return };
-    let out = folder("render");
+    let out = empty_folder("render");
     let path = |name: &str| linemod.join(name).display().to_string();
     let files = [path("000019.png"), path("obj_000001.ply"), path("groud_truth.txt")];
     for kind in ["overlay", "mask", "depth"] {

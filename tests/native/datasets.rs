@@ -9,10 +9,10 @@ use pinpose::formats::dataset::{Contents, Dataset, DatasetKind, Listing, Recogni
 use pinpose::formats::{Archive, FileKey, NamedFile, PosesAs, read_mesh, read_photo_header};
 use pinpose::math::Pose;
 use pinpose::session::{Batch, Command, Session};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::data_folder;
-use crate::support::NOW_MS;
+use crate::support::{CAMERA_JSON, NOW_MS, box_mesh, flat_photo};
 
 fn files_below(folder: &Path, prefix: &str, files: &mut Vec<(String, u64)>) {
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -204,7 +204,7 @@ fn a_zipped_data_set_is_the_folder() {
     let mut files = Vec::new();
     files_below(&folder, "demo/", &mut files);
     let mut writer = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    for (path, _) in files.iter().filter(|(path, _)| !path.contains("000002")) {
+    for (path, _) in files.iter().filter(|(path, _)| !path.contains("test/000002/")) {
         writer.start_file(path, zip::write::SimpleFileOptions::default()).unwrap();
         writer.write_all(&std::fs::read(folder.join(path.strip_prefix("demo/").unwrap())).unwrap()).unwrap();
     }
@@ -228,4 +228,128 @@ fn a_zipped_data_set_is_the_folder() {
     let photo = zipped.photos[3].path.clone();
     assert_eq!(zipped.poses[0].photos[3].key, FileKey::Path(photo.clone()));
     assert!(archive.read(&photo).unwrap().starts_with(&[0xff, 0xd8]));
+}
+
+/// A scene of a thousand photos with twenty objects each is listed and read in a moment: nothing is decoded, and nothing
+/// grows faster than the scene. The bound leaves an unoptimised build and a busy machine ten times what it takes.
+#[test]
+fn a_thousand_frames_take_a_moment() {
+    let mut names = Vec::new();
+    let (mut poses, mut cameras) = (serde_json::Map::new(), serde_json::Map::new());
+    let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    for image in 0..1000 {
+        names.push(format!("train/000001/rgb/{image:06}.jpg"));
+        names.push(format!("train/000001/depth/{image:06}.png"));
+        names.extend((0..20).map(|pose| format!("train/000001/mask_visib/{image:06}_{pose:06}.png")));
+        let pose = |id: u32| json!({"cam_R_m2c": identity, "cam_t_m2c": [0.0, 0.0, image], "obj_id": id});
+        poses.insert(image.to_string(), (1..=20).map(pose).collect());
+        cameras.insert(
+            image.to_string(),
+            json!({"cam_K": [500, 0, 320, 0, 500, 240, 0, 0, 1], "depth_scale": 1}),
+        );
+    }
+    names.extend((1..=20).map(|id| format!("models/obj_{id:06}.ply")));
+    let texts = [("scene_gt.json", poses), ("scene_camera.json", cameras)].map(|(name, content)| {
+        (format!("train/000001/{name}"), Arc::<[u8]>::from(Value::Object(content).to_string().into_bytes()))
+    });
+    names.extend(texts.iter().map(|(path, _)| path.clone()));
+    let photo = std::fs::read(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/demo/bop/test/000001/rgb/000000.jpg"),
+    );
+    let photo: Arc<[u8]> = photo.unwrap().into();
+
+    let start = std::time::Instant::now();
+    let listing = Arc::new(Listing::new("big", names.into_iter().map(|path| (path, 10))).unwrap());
+    let recognised = recognise(&listing).unwrap();
+    assert_eq!(recognised.needed(&[0]).len(), 2);
+    let dataset = recognised.interpret(&[0], &Contents::from(texts)).unwrap();
+    let interpreted = start.elapsed();
+    for photo_of_set in &dataset.photos {
+        read_photo_header(&NamedFile { name: photo_of_set.path.clone(), bytes: photo.clone() }).unwrap();
+    }
+    let all = start.elapsed();
+    println!(
+        "1,000 frames, 20,000 poses and masks: listed and read in {interpreted:.2?}, with photos' headers in {all:.2?}"
+    );
+    assert_eq!((dataset.photos.len(), dataset.pose_count(), dataset.meshes.len()), (1000, 20_000, 20));
+    assert!(dataset.photos.iter().all(|photo| photo.masks.len() == 20 && photo.depth.is_some()));
+    assert!(all.as_secs_f64() < 10.0, "{all:?}");
+}
+
+fn pinpose(arguments: &[&str]) -> std::process::Output {
+    std::process::Command::new(env!("CARGO_BIN_EXE_pinpose")).args(arguments).output().unwrap()
+}
+
+#[test]
+fn inspect_tells_what_a_folder_holds() {
+    let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/demo/bop");
+    let inspect = |folder: &Path| -> Value {
+        let output = pinpose(&["inspect", &folder.display().to_string(), "--json"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()[0].clone()
+    };
+    let whole = inspect(&demo);
+    assert_eq!((&whole["kind"], &whole["content"]["photos"]), (&"BOP data set".into(), &28.into()));
+    assert_eq!(whole["content"]["scenes"][1]["name"], "test / 000002");
+    // A scene's folder by itself: its meshes are found where its data set has them.
+    let scene = inspect(&demo.join("test/000001"));
+    assert_eq!((&scene["content"]["photos"], &scene["content"]["poses"]), (&16.into(), &80.into()));
+    assert_eq!(scene["content"]["meshes"].as_array().unwrap().len(), 5);
+    assert_eq!(scene["missing"], json!([]));
+    let plain = pinpose(&["inspect", &demo.display().to_string()]).stdout;
+    let plain = String::from_utf8(plain).unwrap();
+    assert!(
+        plain.contains("  scene: test / 000002, 12 photos\n") && plain.contains("  found: 140 poses"),
+        "{plain}"
+    );
+}
+
+#[test]
+fn render_opens_one_scene_and_asks_which_of_several() {
+    let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/demo/bop");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render-data-set");
+    std::fs::remove_dir_all(&out).ok();
+    let out_text = out.display().to_string();
+    let run = |folder: &Path| {
+        pinpose(&["render", &folder.display().to_string(), "--kind", "mask", "--out", &out_text])
+    };
+    let several = run(&demo);
+    assert_eq!(several.status.code(), Some(1));
+    let stderr = String::from_utf8_lossy(&several.stderr).into_owned();
+    assert!(stderr.contains("several scenes") && stderr.contains("test / 000001"), "{stderr}");
+    let one = run(&demo.join("test/000001"));
+    assert!(one.status.success(), "{}", String::from_utf8_lossy(&one.stderr));
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 80);
+}
+
+#[test]
+fn poses_exported_in_another_convention_are_read_back() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("poses-back");
+    std::fs::remove_dir_all(&folder).ok();
+    std::fs::create_dir_all(&folder).unwrap();
+    for file in [flat_photo("photo.png", 640, 480), box_mesh("box.obj")] {
+        std::fs::write(folder.join(file.name), &file.bytes).unwrap();
+    }
+    let truth = format!("{CAMERA_JSON}\nbox <-> photo\n0 -1 0 5\n1 0 0 6\n0 0 1 700\n0 0 0 1\n");
+    std::fs::write(folder.join("truth.txt"), truth).unwrap();
+    let path = |name: &str| folder.join(name).display().to_string();
+    let run = |arguments: &[&str]| {
+        let output = pinpose(arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let (photo, mesh, out) = (path("photo.png"), path("box.obj"), path("out"));
+    let convention = ["--axes", "opengl", "--unit", "m", "--direction", "object_from_camera"];
+    let export = ["convert", &photo, &mesh, &path("truth.txt"), &out, "--to", "poses,csv"];
+    run(&[&export[..], &convention[..]].concat());
+    for name in ["out/poses.json", "out/poses.csv"] {
+        run(&["convert", &photo, &mesh, &path(name), &path("again.json")]);
+        let again: Value =
+            serde_json::from_slice(&std::fs::read(folder.join("again.json")).unwrap()).unwrap();
+        let (pose, _) =
+            Pose::from_rows(&rows(&again["photos"][0]["poses"][0]["camera_from_object"])).unwrap();
+        // There and back are a few products of numbers below 1e3.
+        assert!(pose.translation_mm.distance(DVec3::new(5.0, 6.0, 700.0)) < 1e-9, "{name}: {pose:?}");
+        assert!((pose.rotation * DVec3::X).distance(DVec3::Y) < 1e-12, "{name}: {pose:?}");
+        assert_eq!(again["photos"][0]["K"][0][0], 520.5, "{name}");
+    }
 }

@@ -551,8 +551,10 @@ fn a_depth_map_hides_what_is_behind_it() {
     let hidden = Picture { occluder: picture.occluder, ..whole.clone() };
     let [whole, hidden] = [whole, hidden].map(|picture| draw(&mut renderer, &picture));
     assert_close(at(&hidden, 140, 110), nothing, EIGHT_BITS);
-    let left_side = |pixels: &Pixels| (100..120).filter(|x| at(pixels, *x, 100) != nothing).count();
-    assert!(left_side(&whole) > 0 && left_side(&hidden) == 0);
+    // Where it is hidden its outline is fainter, so that it can be found.
+    let left_side = |pixels: &Pixels| (100..120).map(|x| at(pixels, x, 100)[0]).fold(0.0, f64::max);
+    let part = left_side(&hidden) / left_side(&whole);
+    assert!((0.6..0.9).contains(&part), "{part} of the whole outline's brightness");
 }
 
 /// The photo below the meshes is drawn once and kept, and looks the same as if it were drawn with them.

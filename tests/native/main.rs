@@ -3,12 +3,17 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod annotator;
+mod bop_folder;
 mod chrome;
 mod cli;
+mod damaged_files;
 mod dataset_dialog;
 mod datasets;
 mod demo_scene;
 mod documents;
+mod evaluate;
+mod export;
+mod export_dialog;
 mod gestures;
 mod gpu_and_cpu;
 mod images_corpus;

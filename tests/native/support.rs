@@ -1,6 +1,7 @@
-//! What several tests need: the folder of real photographs, a GPU, small scenes.
+//! What several tests need: the folder of real photographs, a GPU, Python, the command line, small scenes.
 
 use std::path::{Path, PathBuf};
+use std::process::{Command as Program, Output};
 use std::sync::Arc;
 
 use pinpose::formats::{NamedFile, Parsed, PosesAs, classify, parse_text_or_archive, read_mesh, read_photo};
@@ -50,6 +51,46 @@ pub fn renderer() -> Option<Renderer> {
             None
         }
     }
+}
+
+/// Python with NumPy.
+pub struct Python(String);
+
+/// The Python that `PINPOSE_PYTHON` names, or the system's; it has to have NumPy.
+pub fn numpy() -> Option<Python> {
+    let program = std::env::var("PINPOSE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let found = Program::new(&program).args(["-c", "import numpy"]).output();
+    if found.is_ok_and(|output| output.status.success()) {
+        return Some(Python(program));
+    }
+    missing("Python with NumPy");
+    None
+}
+
+impl Python {
+    /// Runs one of the scripts in `tests/native/python`; what it prints.
+    pub fn run(&self, script: &str, arguments: &[&str]) -> String {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native/python").join(script);
+        // Threads of a linear algebra library gain nothing here and spin while others work.
+        let mut program = Program::new(&self.0);
+        program.env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1");
+        let output = program.arg(script).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    }
+}
+
+/// Runs the command line.
+pub fn pinpose(arguments: &[&str]) -> Output {
+    Program::new(env!("CARGO_BIN_EXE_pinpose")).args(arguments).output().unwrap()
+}
+
+/// A folder for a test's files, empty.
+pub fn empty_folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::remove_dir_all(&folder).ok();
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
 }
 
 fn missing(what: &str) {

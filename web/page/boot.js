@@ -27,6 +27,9 @@ window.pinposePage = {
   createWorker,
   applyUpdate,
   claim,
+  canPickFolder: 'showDirectoryPicker' in window,
+  pickExportFolder,
+  writeToFolder,
   crashed: showCrash,
 };
 
@@ -162,6 +165,26 @@ function claim(name) {
       });
     navigator.locks.request(name, { signal: AbortSignal.timeout(CLAIM_PATIENCE_MS) }, hold).catch(() => resolve(false));
   });
+}
+
+// A folder to write into, or null where the user picks none.
+async function pickExportFolder() {
+  try {
+    return await window.showDirectoryPicker({ mode: 'readwrite' });
+  } catch (error) {
+    if (error.name === 'AbortError') return null;
+    throw error;
+  }
+}
+
+async function writeToFolder(folder, path, bytes) {
+  const names = path.split('/');
+  const fileName = names.pop();
+  for (const name of names) folder = await folder.getDirectoryHandle(name, { create: true });
+  const file = await folder.getFileHandle(fileName, { create: true });
+  const stream = await file.createWritable();
+  await stream.write(bytes);
+  await stream.close();
 }
 
 // A worker that is loading the module already; it takes `{id, request}` at once, and answers when it is ready.

@@ -8,12 +8,13 @@ use anyhow::{Context as _, bail, ensure};
 use crate::build::{self, Profile};
 use crate::chromium;
 
-const PACKAGES: [&str; 3] = ["chromium", "mesa-vulkan-drivers", "libvulkan1"];
+/// What the checks need of the system: a browser, a software graphics driver, and NumPy, which results are held against.
+const PACKAGES: [&str; 4] = ["chromium", "mesa-vulkan-drivers", "libvulkan1", "python3-numpy"];
 
 /// What to run.
 #[derive(Default)]
 pub struct Checks {
-    /// Install the browser and the software graphics driver first, if they are missing.
+    /// Install the browser, the software graphics driver and NumPy first, if they are missing.
     pub install: bool,
     /// Run the long browser flows too.
     pub full: bool,
@@ -24,7 +25,7 @@ pub struct Checks {
 /// Runs the checks; an error names the first that failed.
 pub fn run(checks: &Checks) -> anyhow::Result<()> {
     if checks.install {
-        step("Install the browser and the graphics driver", install)?;
+        step("Install the browser, the graphics driver and NumPy", install)?;
     }
     if checks.only.is_none() {
         step("Format", || run_command(crate::cargo().args(["fmt", "--all", "--check"])))?;
@@ -87,17 +88,22 @@ fn run_command(command: &mut Command) -> anyhow::Result<()> {
 }
 
 fn install() -> anyhow::Result<()> {
-    if chromium::find().is_some() && chromium::has_software_vulkan() {
-        println!("Both are there.");
+    if chromium::find().is_some() && chromium::has_software_vulkan() && has_numpy() {
+        println!("All are there.");
         return Ok(());
     }
     if chromium::find_program("apt-get").is_none() {
         bail!(
-            "Install Chromium and a software Vulkan driver (Mesa's lavapipe) with your system's package manager"
+            "Install Chromium, a software Vulkan driver (Mesa's lavapipe) and Python with NumPy with your system's package manager"
         );
     }
     run_command(apt_get()?.arg("update"))?;
     run_command(apt_get()?.args(["install", "-y", "--no-install-recommends"]).args(PACKAGES))
+}
+
+fn has_numpy() -> bool {
+    let found = Command::new("python3").args(["-c", "import numpy"]).output();
+    found.is_ok_and(|output| output.status.success())
 }
 
 /// Through sudo, unless this is root already.

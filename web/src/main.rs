@@ -20,7 +20,7 @@ cargo web serve [--quick] [--dir DIR] [--port N] [--open]
     --open   opens the page in the browser
 cargo web test [--install-deps] [--full] [--only NAME]
     Runs every check: format, lints, native tests, the page in a browser.
-    --install-deps  installs the browser and a software graphics driver first (apt)
+    --install-deps  installs the browser, a software graphics driver and NumPy first (apt)
     --full          runs the long browser flows too
     --only          runs only the browser flows with NAME in their names
 ";

@@ -3,8 +3,8 @@
 use crate::formats::gather::{Found, Gather};
 use crate::formats::{FileKey, FormatError, Incoming};
 
-/// The field's largest evaluations have a few hundred thousand.
-const MAX_ROWS: usize = 2_000_000;
+/// BOP's targets are some ten thousand images, of each of which a method gives a few estimates.
+const MAX_ROWS: usize = 500_000;
 
 /// Does a text begin as results do: with their header, or with a row of them?
 pub fn is_results_csv(text: &str) -> bool {

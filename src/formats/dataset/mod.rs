@@ -55,6 +55,9 @@ pub struct Choice {
     pub bytes: u64,
 }
 
+/// A `scene_gt.json` of a thousand photos with twenty objects each takes a sixth of it; what is larger is not asked for.
+const MAX_TEXT_BYTES: u64 = 64 << 20;
+
 /// The files that were read, by path. One that could not be read is left out.
 pub type Contents = BTreeMap<String, Arc<[u8]>>;
 
@@ -65,6 +68,7 @@ pub struct Recognised {
     pub name: String,
     /// Never empty.
     pub choices: Vec<Choice>,
+    listing: Arc<Listing>,
     layout: Layout,
 }
 
@@ -147,24 +151,29 @@ impl DatasetMesh {
 
 /// Tells by the names of files what a folder or an archive is; `None` where it holds nothing that could be opened together.
 pub fn recognise(listing: &Arc<Listing>) -> Option<Recognised> {
-    let layouts: [fn(&Arc<Listing>) -> Option<Recognised>; 4] =
-        [megapose::recognise, bop::recognise, linemod::recognise, folder::recognise];
-    layouts.into_iter().find_map(|layout| layout(listing))
+    // A folder of photos is what is left when it is nothing else.
+    megapose::recognise(listing)
+        .or_else(|| bop::recognise(listing))
+        .or_else(|| linemod::recognise(listing))
+        .or_else(|| folder::recognise(listing))
 }
 
 impl Recognised {
-    fn new(kind: DatasetKind, listing: &Listing, choices: Vec<Choice>, layout: Layout) -> Option<Self> {
-        (!choices.is_empty()).then(|| Self { kind, name: listing.name().to_owned(), choices, layout })
+    fn new(kind: DatasetKind, listing: &Arc<Listing>, choices: Vec<Choice>, layout: Layout) -> Option<Self> {
+        let (name, listing) = (listing.name().to_owned(), listing.clone());
+        (!choices.is_empty()).then_some(Self { kind, name, choices, listing, layout })
     }
 
     /// The small files that have to be read before these choices, by their indices, can be interpreted.
     pub fn needed(&self, chosen: &[usize]) -> Vec<String> {
-        match &self.layout {
+        let mut paths = match &self.layout {
             Layout::Bop(layout) => layout.needed(chosen),
             Layout::Linemod(layout) => layout.needed(chosen),
             Layout::MegaPose(layout) => layout.needed(chosen),
             Layout::Folder(layout) => layout.needed(),
-        }
+        };
+        paths.retain(|path| self.listing.size_of(path).is_some_and(|bytes| bytes <= MAX_TEXT_BYTES));
+        paths
     }
 
     /// What the chosen parts hold. Files of `contents` that cannot be understood, and parts of them, are missed in words;

@@ -155,7 +155,7 @@ impl Document {
             state: pose.state.into(),
             source: pose.source.into(),
             changed_at_ms: Some(pose.changed_at_ms),
-            score: None,
+            score: pose.score,
         })
     }
 
@@ -268,6 +268,7 @@ fn pose_entry(object: &Object, annotation: &Annotation) -> PoseEntry {
         source: annotation.source.into(),
         changed_at_ms: annotation.changed_at_ms,
         camera_changed: annotation.camera_changed,
+        score: annotation.score,
     }
 }
 

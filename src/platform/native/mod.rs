@@ -1,6 +1,7 @@
 //! The desktop: dialogs, folders, threads.
 
 mod background;
+mod export;
 mod file_tree;
 mod folder;
 mod preferences;
@@ -12,6 +13,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use super::{EXAMPLE_PATH, FileBytes, SceneId, Storage, UpdateOffer};
 
 pub use background::Background;
+pub use export::{ExportFolder, GrowingDownload};
 pub use file_tree::{open_folder, pick_folder, watch_dropped_folders};
 pub use folder::FolderStorage;
 pub use preferences::{read_stored_preference, write_stored_preference};

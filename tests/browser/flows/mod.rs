@@ -88,6 +88,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "objects", workspace::objects),
     Flow::on(WEBGL, "output", workspace::output),
     Flow::on(WEBGL, "confirm", workspace::confirm),
+    Flow::on(WEBGL, "export", workspace::export),
     Flow::on(WEBGL, "mask-import", workspace::mask_import),
     Flow::on(WEBGL, "keys", workspace::keys),
     Flow::on(WEBGL, "lost-graphics", workspace::lost_graphics),

@@ -22,9 +22,13 @@ pub(super) struct Layout {
 }
 
 pub(super) fn recognise(listing: &Arc<Listing>) -> Option<Recognised> {
-    let parts = parts_of(listing);
+    let (parts, models) = (parts_of(listing), model_folders(listing));
+    // Numbered photos in a folder "rgb" alone are anybody's.
+    if models.is_empty() && !parts.iter().any(|part| part.poses.is_some() || part.cameras.is_some()) {
+        return None;
+    }
     let choices = parts.iter().map(|part| part.choice(listing)).collect();
-    let layout = Layout { listing: listing.clone(), parts, models: model_folders(listing) };
+    let layout = Layout { listing: listing.clone(), parts, models };
     Recognised::new(DatasetKind::Bop, listing, choices, AnyLayout::Bop(layout))
 }
 

@@ -110,7 +110,8 @@ fn part_of(
 /// "test / 000002 / rgb_left".
 fn label_of(listing: &Listing, scene: &str, sensor: Option<&str>) -> String {
     let split = if scene.is_empty() { None } else { Some(listing.folder_name(parent(scene))) };
-    let parts = split.into_iter().chain([listing.folder_name(scene)]).chain(sensor);
+    let own = listing.folder_name(scene);
+    let parts = split.into_iter().filter(|split| *split != own).chain([own]).chain(sensor);
     parts.filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" / ")
 }
 

@@ -1,6 +1,7 @@
 //! The interface around the views, used with mouse and keys: panels, looks, handles, history, keys.
 
 mod confirm;
+mod export;
 mod handles;
 mod keys;
 mod looks;
@@ -13,6 +14,7 @@ mod panels;
 mod scene_view;
 
 pub use confirm::confirm;
+pub use export::export;
 pub use handles::handles;
 pub use keys::keys;
 pub use looks::looks;
