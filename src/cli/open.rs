@@ -11,7 +11,8 @@ use crate::formats::{
     FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
     read_mesh_with, read_photo, read_photo_header, with_companions,
 };
-use crate::session::{Batch, Command, Effect, Opening, Session, Severity};
+use crate::scene::PhotoAsset;
+use crate::session::{Batch, Command, Effect, Opening, PhotoChange, Session, Severity};
 
 /// Reads files, and the files directly in folders. What is said on the way goes to stderr.
 pub fn read_files(paths: &[PathBuf]) -> Result<Vec<NamedFile>, Failure> {
@@ -94,7 +95,16 @@ pub fn open_session(paths: &[PathBuf]) -> Result<Session, Failure> {
 struct Opened {
     batch: Batch,
     document: Option<crate::formats::Document>,
+    depths: Vec<Depth>,
     problems: Vec<String>,
+}
+
+/// A data set's depth map, on its way to its photo.
+struct Depth {
+    /// The photo's path in the data set, and so its file's name.
+    photo: String,
+    asset: Arc<PhotoAsset>,
+    mm_per_unit: f64,
 }
 
 impl Opened {
@@ -143,6 +153,7 @@ impl Opened {
         }
         let setting = dataset.setting();
         self.read_photos(&mut source, &dataset);
+        self.read_depths(&mut source, &dataset);
         self.read_meshes(&mut source, &dataset);
         self.batch.poses.push(setting);
         self.batch.poses.extend(dataset.poses);
@@ -156,6 +167,25 @@ impl Opened {
             });
             match read {
                 Ok(asset) => self.batch.photos.push(Arc::new(asset)),
+                Err(problem) => eprintln!("pinpose: {problem}: left out"),
+            }
+        }
+    }
+
+    fn read_depths(&mut self, source: &mut Source, dataset: &Dataset) {
+        for (photo, depth) in
+            dataset.photos.iter().filter_map(|photo| Some((&photo.path, photo.depth.as_ref()?)))
+        {
+            let read = source.read(&depth.path).and_then(|bytes| {
+                let file = NamedFile { name: depth.path.clone(), bytes };
+                read_photo_header(&file).map_err(|error| format!("{}: {error}", depth.path))
+            });
+            match read {
+                Ok(asset) => self.depths.push(Depth {
+                    photo: photo.clone(),
+                    asset: Arc::new(asset),
+                    mm_per_unit: depth.mm_per_unit,
+                }),
                 Err(problem) => eprintln!("pinpose: {problem}: left out"),
             }
         }
@@ -206,6 +236,27 @@ impl Opened {
                 eprintln!("pinpose: {}", notice.text);
             }
         }
+        give_depths(&mut session, self.depths);
         Ok(session)
+    }
+}
+
+/// Gives each depth map to its photo; what does not fit is said.
+fn give_depths(session: &mut Session, depths: Vec<Depth>) {
+    let shown = session.photo().map(|photo| photo.id);
+    let now_ms = crate::platform::now_ms();
+    for Depth { photo, asset, mm_per_unit } in depths {
+        let found = session.scene().photos.iter().find(|candidate| candidate.asset.file_name == photo);
+        let Some(id) = found.map(|photo| photo.id) else { continue };
+        let scale = Command::EditPhoto(id, PhotoChange::DepthScale(mm_per_unit));
+        for command in [Command::ShowPhoto(id), Command::ImportDepth(asset), scale] {
+            if let Err(error) = session.apply(command, now_ms) {
+                eprintln!("pinpose: {photo}: {error}");
+                break;
+            }
+        }
+    }
+    if let Some(shown) = shown {
+        session.apply(Command::ShowPhoto(shown), now_ms).ok();
     }
 }

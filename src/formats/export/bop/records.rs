@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::super::plan::{PhotoPlan, Plan};
+use super::super::plan::{PhotoPlan, Placed, Plan};
 use super::coco::{Category, Coco};
 use super::depth_scale;
 use super::frames::{CameraEntry, TruthEntry, TruthInfo};
@@ -14,11 +14,16 @@ use crate::scene::Photo;
 /// BOP's "time unknown".
 const UNKNOWN_TIME: &str = "-1";
 
+/// The score of a pose that has none: somebody stands for it.
+const SURE: f64 = 1.0;
+
 #[derive(Debug)]
 pub(in super::super) struct Records {
     cameras: BTreeMap<u32, CameraEntry>,
     truths: BTreeMap<u32, Vec<TruthEntry>>,
     infos: BTreeMap<u32, Vec<TruthInfo>>,
+    /// Of each of the truths, for the results file.
+    scores: BTreeMap<u32, Vec<f64>>,
     coco: Coco,
 }
 
@@ -45,7 +50,8 @@ impl Records {
                 supercategory: name.to_owned(),
             })
             .collect();
-        Self { cameras: BTreeMap::new(), truths: BTreeMap::new(), infos: BTreeMap::new(), coco }
+        let (cameras, truths) = (BTreeMap::new(), BTreeMap::new());
+        Self { cameras, truths, infos: BTreeMap::new(), scores: BTreeMap::new(), coco }
     }
 
     /// Takes down a photo with the silhouettes of what is placed in it; `file_name` is relative to the scene's folder.
@@ -69,6 +75,8 @@ impl Records {
         for ((truth, info), silhouette) in truths.iter().zip(&infos).zip(silhouettes) {
             self.coco.add_object(id, truth.obj_id, &silhouette.visible, info);
         }
+        let score_of = |placed: &Placed<'_>| placed.annotation.score.unwrap_or(SURE);
+        self.scores.insert(id, placed.iter().map(score_of).collect());
         self.truths.insert(id, truths);
         self.infos.insert(id, infos);
     }
@@ -100,13 +108,14 @@ impl Records {
         json(&targets)
     }
 
-    /// The poses as BOP's results file, each with a score of 1.
+    /// The poses as BOP's results file, with the scores that they were imported with.
     pub fn results(&self, scene_id: u32) -> String {
         let mut text = "scene_id,im_id,obj_id,score,R,t,time\n".to_owned();
         for (image_id, truths) in &self.truths {
-            for truth in truths {
-                let columns = truth.result_columns();
-                text += &format!("{scene_id},{image_id},{},1,{columns},{UNKNOWN_TIME}\n", truth.obj_id);
+            let scores = self.scores.get(image_id).into_iter().flatten();
+            for (truth, score) in truths.iter().zip(scores) {
+                let (object, columns) = (truth.obj_id, truth.result_columns());
+                text += &format!("{scene_id},{image_id},{object},{score},{columns},{UNKNOWN_TIME}\n");
             }
         }
         text
