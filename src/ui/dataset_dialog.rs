@@ -12,7 +12,7 @@ use crate::formats::dataset::{Dataset, Recognised};
 
 const WIDTH: f32 = 560.0;
 /// The choices below the lists, the buttons, and the dialog's own edges.
-const ROOM_FOR_CHOICES: f32 = 330.0;
+const ROOM_FOR_CHOICES: f32 = 300.0;
 const BUTTON_SIZE: Vec2 = Vec2::new(92.0, 28.0);
 /// Lines of one list; the others are counted.
 const MOST_LINES: usize = 60;

@@ -9,7 +9,7 @@ use crate::formats::dataset::Choice;
 use crate::ui::scenes_dialog::words::size_text;
 use crate::ui::theme;
 
-const ROW_HEIGHT: f32 = 24.0;
+const ROW_HEIGHT: f32 = 20.0;
 /// More rows scroll; fewer on a low screen.
 const MOST_ROWS: f32 = 7.0;
 const LEAST_ROWS: f32 = 2.0;
