@@ -10,6 +10,7 @@ impl PinPose {
     pub(super) fn carry_out(&mut self, effect: Effect) {
         match effect {
             Effect::PickFiles(pick) => self.loading.pick_files(pick),
+            Effect::PickFolder => self.datasets.pick_folder(),
             Effect::LoadExample => self.loading.fetch_example(),
             Effect::Download { file_name, bytes } => {
                 if let Err(error) = platform::download(&file_name, &bytes) {

@@ -10,8 +10,8 @@ use std::sync::Arc;
 use super::jobs::{Done, JobKind, Jobs, Urgency};
 use super::thumbnails::ThumbnailJobs;
 use crate::formats::{
-    Document, FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
-    with_companions,
+    Archive, Document, FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify,
+    parse_text_or_archive, with_companions,
 };
 use crate::photo::{DepthPixels, Pixels, is_depth_like};
 use crate::platform::{self, FileBytes, PageReply, Saved, SavedAsset};
@@ -43,6 +43,8 @@ pub struct Loading {
     /// Depth maps of the scene that are decoded to be shown.
     depth_jobs: HashMap<u64, Sha256>,
     finished_depths: Vec<(Sha256, Option<Arc<DepthPixels>>)>,
+    /// Zips that are no workspaces.
+    archives: Vec<FoundArchive>,
 }
 
 /// What images are.
@@ -68,6 +70,15 @@ impl Arrival {
     pub fn of_files(files: Vec<Result<FileBytes, String>>) -> Self {
         Self { files, poses_as: None, images_as: ImagesAs::Photos, reply: None }
     }
+}
+
+/// A zip that may be a data set.
+pub struct FoundArchive {
+    pub name: String,
+    pub archive: Archive,
+    pub poses_as: Option<PosesAs>,
+    /// Of whoever loaded it and said what poses are to be.
+    pub reply: Option<PageReply>,
 }
 
 /// One drop on its way.
@@ -112,6 +123,7 @@ impl Loading {
             finished_thumbnails: Vec::new(),
             depth_jobs: HashMap::new(),
             finished_depths: Vec::new(),
+            archives: Vec::new(),
         }
     }
 
@@ -230,6 +242,10 @@ impl Loading {
         self.depth_jobs.insert(job, depth.sha256);
     }
 
+    pub fn take_archives(&mut self) -> Vec<FoundArchive> {
+        std::mem::take(&mut self.archives)
+    }
+
     pub fn is_worker_idle(&self) -> bool {
         self.jobs.is_idle()
     }
@@ -247,9 +263,20 @@ impl Loading {
         let mut load = self.new_load(batch, arrival.reply);
         load.images_as = arrival.images_as;
         let mut files = Vec::new();
+        let is_alone = arrival.files.len() == 1;
         for file in arrival.files {
             match file {
-                Ok(file) => files.push(NamedFile { name: file.name, bytes: Arc::from(file.bytes) }),
+                Ok(file) => {
+                    let file = NamedFile { name: file.name, bytes: Arc::from(file.bytes) };
+                    let Some(archive) = dataset_archive(&file) else {
+                        files.push(file);
+                        continue;
+                    };
+                    let poses_as = arrival.poses_as;
+                    let reply = load.reply.take_if(|_| is_alone && poses_as.is_some());
+                    load.files += 1;
+                    self.archives.push(FoundArchive { name: file.name, archive, poses_as, reply });
+                }
                 Err(problem) => load.problems.push(problem),
             }
         }
@@ -391,6 +418,14 @@ fn accepted(pick: Pick) -> &'static [&'static str] {
     }
 }
 
+/// The file as an archive, if it is a zip that this program did not save.
+fn dataset_archive(file: &NamedFile) -> Option<Archive> {
+    let is_zip = classify(&file.name, &file.bytes) == FileKind::Workspace;
+    // What is damaged is said by whoever reads it as a workspace.
+    let archive = if is_zip { Archive::open(file.bytes.clone()).ok()? } else { return None };
+    (!archive.is_workspace()).then_some(archive)
+}
+
 fn file_of(photo: &PhotoAsset) -> NamedFile {
     NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() }
 }
@@ -427,8 +462,8 @@ impl Load {
             // A saved scene says itself what is whose depth map.
             Ok(Done::DepthMap(asset, _)) if self.opening.is_some() => self.batch.photos.push(asset),
             Ok(Done::DepthMap(asset, _)) => self.likely_depths.push(asset),
-            // Thumbnails are of no load.
-            Ok(Done::Thumbnail(_)) => return,
+            // These are of no load.
+            Ok(Done::Thumbnail(_) | Done::Headers(_)) => return,
             Ok(Done::Mesh(asset, warnings)) => {
                 self.warnings.extend(warnings.into_iter().map(|warning| format!("{}: {warning}", file.name)));
                 self.batch.meshes.push(asset);

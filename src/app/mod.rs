@@ -5,6 +5,7 @@
 
 mod answers;
 mod autosave;
+mod datasets;
 mod depth_maps;
 mod effects;
 mod events;
@@ -38,6 +39,7 @@ pub struct PinPose {
     hands: Hands,
     ui_state: UiState,
     loading: loading::Loading,
+    datasets: datasets::Datasets,
     photos: photo_cache::PhotoCache,
     autosave: autosave::Autosave,
     scenes: scenes::Scenes,
@@ -84,6 +86,7 @@ impl PinPose {
             hands: Hands::default(),
             ui_state: UiState::new(ui::Preferences::load()),
             loading: loading::Loading::new(ctx),
+            datasets: datasets::Datasets::new(ctx),
             photos: photo_cache::PhotoCache::default(),
             autosave: autosave::Autosave::new(start.storage.clone(), ctx.clone(), first_id),
             scenes: scenes::Scenes::new(start.storage, ctx),
@@ -132,6 +135,7 @@ impl eframe::App for PinPose {
         self.tick_scenes();
         self.take_loaded();
         self.take_dropped(ctx);
+        self.tick_datasets();
         self.answer_calls(ctx);
         self.take_keys(ctx);
         self.take_gestures(ctx);
@@ -149,7 +153,8 @@ impl eframe::App for PinPose {
         let depth = self.session.photo().map(|photo| photo.id).and_then(|photo| self.depth_of(photo));
         let open_scene = self.autosave.id();
         let opening = || ui::Busy { text: "Opening…".to_owned(), can_cancel: false };
-        let busy = self.loading.busy(platform::now_ms()).or_else(|| self.exporting.busy());
+        let busy = self.loading.busy(platform::now_ms()).or_else(|| self.datasets.busy());
+        let busy = busy.or_else(|| self.exporting.busy());
         let busy = busy.or_else(|| self.scenes.is_opening().then(opening));
         let around = ui::Surroundings {
             hands: &self.hands,
@@ -167,6 +172,7 @@ impl eframe::App for PinPose {
                 now_ms: platform::now_ms(),
             },
             update_ready: platform::update_offer().is_some(),
+            dataset: self.datasets.view(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
         };
         if self.performance.start_ms == 0.0 {
@@ -190,6 +196,10 @@ impl eframe::App for PinPose {
         }
         if asked.apply_update {
             platform::reload();
+        }
+        if !asked.dataset_requests.is_empty() {
+            asked.dataset_requests.into_iter().for_each(|request| self.take_dataset_request(request));
+            ui.ctx().request_repaint();
         }
         if !asked.scene_requests.is_empty() {
             asked.scene_requests.into_iter().for_each(|request| self.take_scene_request(request));
@@ -216,6 +226,8 @@ impl PinPose {
         if self.loading.is_busy() {
             self.loading.cancel();
             self.notify(Notice::info("Cancelled: what was not read yet is left out"));
+        } else if self.datasets.cancel() {
+            self.notify(Notice::info("Cancelled: nothing was opened"));
         } else if self.exporting.cancel() {
             self.notify(Notice::info("Cancelled: nothing more is exported"));
         }

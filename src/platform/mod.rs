@@ -3,6 +3,7 @@
 //! A facade with one implementation for the page and one for the desktop, and a store in memory for tests. Imports none
 //! of our own rooms.
 
+mod file_tree;
 mod memory;
 mod page_api;
 mod preferences;
@@ -14,12 +15,14 @@ mod native;
 #[cfg(target_arch = "wasm32")]
 mod web;
 
+pub use file_tree::{FileFuture, FileTree, FolderEvent, GoOn};
 pub use memory::MemoryStorage;
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
     Background, ExportFolder, FolderStorage, GrowingDownload, default_storage, download, fetch_example,
-    memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, reload,
-    report_crash, send_event, spawn, update_offer, wasm_bytes, when_left,
+    memory_bytes, navigation_ms, new_scene_id, now_ms, open_folder, page_parameter, page_version, pick_files,
+    pick_folder, reload, report_crash, send_event, spawn, update_offer, wasm_bytes, watch_dropped_folders,
+    when_left,
 };
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
@@ -33,8 +36,9 @@ pub use time_zone::utc_offset_minutes;
 #[cfg(target_arch = "wasm32")]
 pub use web::{
     Background, ExportFolder, GrowingDownload, default_storage, download, fetch_example, install_panic_hook,
-    memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, reload,
-    report_crash, send_event, spawn, update_offer, wasm_bytes, watch_for_updates, when_left,
+    memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, pick_folder,
+    reload, report_crash, send_event, spawn, update_offer, wasm_bytes, watch_dropped_folders,
+    watch_for_updates, when_left,
 };
 
 /// A file that the user picked or dropped.

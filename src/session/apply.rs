@@ -14,6 +14,7 @@ impl Session {
             Command::Import(batch) => Ok(self.import(*batch, now_ms)),
             Command::ImportMasks(images) => self.import_masks(&images),
             Command::ImportDepth(image) => self.import_depth(image),
+            Command::OpenDataset(import) => Ok(self.open_dataset(*import, now_ms)),
             Command::Open(opening) => Ok(self.open(*opening, now_ms)),
             Command::Answer(answer) => self.answer(answer, now_ms),
             Command::RenameScene(name) => {

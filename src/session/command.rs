@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::{Answer, Batch, CommandId, LogEntry, Nudge, NudgeSettings, Opening, Panes, Tool};
+use super::{Answer, Batch, CommandId, DatasetImport, LogEntry, Nudge, NudgeSettings, Opening, Panes, Tool};
 use crate::math::{Intrinsics, Pose};
 use crate::scene::{
     CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, PoseSource, Rgb,
@@ -23,6 +23,8 @@ pub enum Command {
     ImportDepth(Arc<PhotoAsset>),
     /// A saved scene in place of this one.
     Open(Box<Opening>),
+    /// A data set in place of this one.
+    OpenDataset(Box<DatasetImport>),
     Answer(Answer),
     /// What the scene is called; no undo step.
     RenameScene(String),

@@ -9,6 +9,7 @@ use crate::scene::{ObjectId, PhotoId};
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
     PickFiles(Pick),
+    PickFolder,
     LoadExample,
     Download {
         file_name: String,

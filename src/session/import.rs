@@ -160,14 +160,14 @@ impl Session {
         incoming.apply(&mut self.scene.clone(), PosesAs::Reference, 0.0).applied
     }
 
-    fn wait_for(&mut self, outcome: Outcome, poses_as: PosesAs) {
+    pub(super) fn wait_for(&mut self, outcome: Outcome, poses_as: PosesAs) {
         if let Some(incoming) = outcome.rest {
             self.waiting.retain(|waiting| waiting.incoming != incoming);
             self.waiting.push(Waiting { incoming, poses_as, missing: outcome.missing });
         }
     }
 
-    fn ask_about_cameras(&mut self, outcome: &Outcome) {
+    pub(super) fn ask_about_cameras(&mut self, outcome: &Outcome) {
         for (photo, file) in &outcome.differing_cameras {
             let known = self.questions.iter_mut().find_map(|question| match question {
                 Question::CameraSize { file: asked, photos } if asked == file => Some(photos),
@@ -209,7 +209,7 @@ impl Session {
     }
 
     /// If nothing is placed in the photo that is shown, another one that has something is a better start.
-    fn show_annotated_photo(&mut self) {
+    pub(super) fn show_annotated_photo(&mut self) {
         let Some(photo) = self.photo else { return };
         if self.scene.objects_in(photo).next().is_none() {
             let annotated = |id: PhotoId| self.scene.objects_in(id).next().is_some();

@@ -6,6 +6,7 @@ mod apply;
 mod availability;
 mod command;
 mod confirm;
+mod dataset;
 mod depth;
 mod edit;
 mod effect;
@@ -22,6 +23,7 @@ mod view;
 use std::collections::BTreeSet;
 
 pub use command::{Command, CommandError, MaskChange, ObjectChange, PhotoChange};
+pub use dataset::DatasetImport;
 pub use depth::with_depth_changed;
 pub use effect::{Answer, Effect, Notice, Pick, PictureKind, PictureRequest, Question, Severity};
 pub use history::MAX_BYTES as HISTORY_BYTES;

@@ -190,6 +190,7 @@ impl Session {
 fn effect_of(id: CommandId) -> Option<Effect> {
     Some(match id {
         CommandId::OpenFiles => Effect::PickFiles(Pick::Anything),
+        CommandId::OpenFolder => Effect::PickFolder,
         CommandId::ImportPhotos => Effect::PickFiles(Pick::Photos),
         CommandId::ImportMeshes => Effect::PickFiles(Pick::Meshes),
         CommandId::ImportMasks => Effect::PickFiles(Pick::Masks),

@@ -82,6 +82,7 @@ macro_rules! commands {
 #[rustfmt::skip]
 commands![
     (OpenFiles, "open_files", File, "Open files…", "Add photos, meshes, cameras, poses or a workspace", ctrl("O"), always),
+    (OpenFolder, "open_folder", File, "Open folder…", "Open a data set: BOP, Linemod, MegaPose, or photos and meshes in a folder", None, always),
     (NewScene, "new_scene", File, "New scene", "Start an empty scene; this one stays among your scenes", ctrl_alt("N"), needs_content),
     (OpenScene, "open_scene", File, "Open scene…", "All scenes that are kept in this browser", ctrl_shift("O"), always),
     (SaveScene, "save_scene", File, "Save", "Keep the scene in this browser now; it is also done by itself", ctrl("S"), needs_content),

@@ -21,7 +21,7 @@ pub const MENUS: [MenuPlan; 5] = [
         title: "File",
         groups: &[
             &[CommandId::NewScene, CommandId::OpenScene, CommandId::SaveScene, CommandId::SaveSceneAs],
-            &[CommandId::OpenFiles],
+            &[CommandId::OpenFiles, CommandId::OpenFolder],
             &[
                 CommandId::ImportPhotos,
                 CommandId::ImportMeshes,

@@ -1,6 +1,7 @@
 //! The interface: panels, viewport, dialogs. Reads a [`Session`] and returns commands; changes nothing itself.
 
 mod command_button;
+mod dataset_dialog;
 mod dialogs;
 mod export_dialog;
 mod icons;
@@ -27,6 +28,7 @@ use crate::interact::{Hands, SceneMove};
 use crate::platform::{SceneId, SceneSummary, StorageUse};
 use crate::session::{Command, Effect, Session};
 
+pub use dataset_dialog::{DatasetRequest, DatasetView};
 pub use export_dialog::ExportRequest;
 pub use keymap::{Binding, Keymap, Refusal};
 pub use preferences::{DragModifier, ModifierKey, ModifierMap, Preferences, ThemeChoice};
@@ -117,6 +119,8 @@ pub struct Surroundings<'a> {
     pub update_ready: bool,
     /// Files are being dragged over the window.
     pub files_hover: bool,
+    /// A data set that waits for the user, or is being opened.
+    pub dataset: Option<DatasetView<'a>>,
     /// The scenes that are stored, the one that was changed last first.
     pub scenes: &'a [SceneSummary],
     pub store: StoreView<'a>,
@@ -154,6 +158,7 @@ pub enum Saving {
 pub struct Asked {
     pub commands: Vec<Command>,
     pub scene_requests: Vec<SceneRequest>,
+    pub dataset_requests: Vec<DatasetRequest>,
     pub scene_move: Option<SceneMove>,
     pub apply_update: bool,
     pub cancel_loading: bool,
@@ -197,6 +202,9 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
         }
     });
     dialogs::draw(ui.ctx(), session, state, &mut asked);
+    if let Some(dataset) = &around.dataset {
+        dataset_dialog::draw(ui.ctx(), dataset, &mut asked.dataset_requests);
+    }
     scenes_dialog::draw(ui.ctx(), around, &mut state.scenes_dialog, &mut asked.scene_requests);
     state.toasts.draw(ui.ctx());
     asked

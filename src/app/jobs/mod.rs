@@ -8,7 +8,7 @@ mod wire;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
-use crate::formats::{NamedFile, kept, read_mesh_with, read_photo};
+use crate::formats::{NamedFile, kept, read_mesh_with, read_photo, read_photo_header};
 use crate::mesh::{Bvh, Material, Mesh, MeshData, Paint};
 use crate::photo::{DepthPixels, Pixels, decode, decode_depth, thumbnail};
 use crate::platform::Background;
@@ -28,6 +28,8 @@ pub enum JobKind {
     Mesh,
     Thumbnail,
     DepthMap,
+    /// Of a file and all of its companions, which are images as it is: sizes and hashes, nothing decoded.
+    Headers,
 }
 
 impl JobKind {
@@ -37,6 +39,7 @@ impl JobKind {
             Self::Mesh => 1,
             Self::Thumbnail => 2,
             Self::DepthMap => 3,
+            Self::Headers => 4,
         }
     }
 }
@@ -55,6 +58,8 @@ pub enum Done {
     Mesh(Arc<MeshAsset>, Vec<String>),
     Thumbnail(Pixels),
     DepthMap(Arc<PhotoAsset>, Arc<DepthPixels>),
+    /// In the order of the files; an error names its file.
+    Headers(Vec<Result<Arc<PhotoAsset>, String>>),
 }
 
 /// What is asked of the worker.
@@ -194,6 +199,7 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
         3 => decode_depth(&file.bytes)
             .map(|depth| write_depth(&file, &depth))
             .map_err(|error| error.to_string()),
+        4 => Ok(write_headers(std::iter::once(&file).chain(&companions))),
         _ => read_mesh_with(&file, &companions)
             .map(|(asset, warnings)| write_mesh(&asset, &warnings))
             .map_err(|error| error.to_string()),
@@ -211,6 +217,9 @@ fn read_reply(
         Some(1) if kind == JobKind::Photo => read_photo_reply(file, &mut reader),
         Some(1) if kind == JobKind::Thumbnail => read_pixels(&mut reader).map(Done::Thumbnail),
         Some(1) if kind == JobKind::DepthMap => read_depth_reply(file, &mut reader),
+        Some(1) if kind == JobKind::Headers => {
+            read_headers(std::iter::once(file).chain(companions), &mut reader).map(Done::Headers)
+        }
         Some(1) => read_mesh_reply(file, companions, &mut reader),
         _ => {
             let message = reader.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned());
@@ -257,6 +266,45 @@ fn read_photo_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
         exif_focal_px,
     };
     Some(Done::Photo(Arc::new(asset), Arc::new(pixels)))
+}
+
+fn write_headers<'a>(files: impl Iterator<Item = &'a NamedFile>) -> Vec<u8> {
+    let mut writer = Writer::default();
+    for file in files {
+        match read_photo_header(file) {
+            Ok(asset) => {
+                writer.byte(1);
+                writer.bytes(asset.sha256.to_string().as_bytes());
+                writer.number(f64::from(asset.width));
+                writer.number(f64::from(asset.height));
+                writer.number(asset.exif_focal_px.unwrap_or(0.0));
+            }
+            Err(error) => {
+                writer.byte(0);
+                writer.bytes(error.to_string().as_bytes());
+            }
+        }
+    }
+    writer.finish()
+}
+
+fn read_headers<'a>(
+    files: impl Iterator<Item = &'a NamedFile>,
+    reader: &mut Reader<'_>,
+) -> Option<Vec<Result<Arc<PhotoAsset>, String>>> {
+    files.map(|file| read_header(file, reader)).collect()
+}
+
+fn read_header(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Result<Arc<PhotoAsset>, String>> {
+    if reader.byte()? == 0 {
+        let reason = String::from_utf8_lossy(reader.bytes()?);
+        return Some(Err(format!("{}: {reason}", file.name)));
+    }
+    let sha256 = read_hash(reader)?;
+    let (width, height) = (reader.number()? as u32, reader.number()? as u32);
+    let exif_focal_px = Some(reader.number()?).filter(|focal_px| *focal_px > 0.0);
+    let (file_name, bytes) = (file.name.clone(), file.bytes.clone());
+    Some(Ok(Arc::new(PhotoAsset { file_name, sha256, bytes, width, height, exif_focal_px })))
 }
 
 fn write_depth(file: &NamedFile, depth: &DepthPixels) -> Vec<u8> {
@@ -391,6 +439,20 @@ mod tests {
         assert_eq!((&asset.mesh, &asset.companions), (&expected.mesh, &expected.companions));
         assert_eq!(*asset.mesh.paint().unwrap().textures[0], pixels);
         assert_eq!(asset.bvh.to_parts(), expected.bvh.to_parts());
+    }
+
+    #[test]
+    fn headers_come_together_and_one_that_is_none_stands_alone() {
+        let pixels = Pixels { width: 7, height: 3, rgba: [10, 20, 30, 255].repeat(21) };
+        let png = crate::photo::png_rgba(&pixels).unwrap();
+        let files = [file("b.png", b"nothing"), file("c.png", &png)];
+        let Ok(Done::Headers(read)) = run(JobKind::Headers, &file("a/a.png", &png), &files) else {
+            panic!("no headers")
+        };
+        let [Ok(first), Err(none), Ok(last)] = &read[..] else { panic!("{}", read.len()) };
+        assert_eq!((first.file_name.as_str(), first.width, first.height), ("a/a.png", 7, 3));
+        assert_eq!((first.sha256, &*last.bytes), (Sha256::of(&png), &png[..]));
+        assert!(none.starts_with("b.png: ") && none.contains("PNG"), "{none}");
     }
 
     #[test]

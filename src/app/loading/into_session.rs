@@ -12,6 +12,10 @@ impl PinPose {
     /// Files dropped on the window.
     pub(in crate::app) fn take_dropped(&mut self, ctx: &egui::Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        // A window gives folders as it gives files; a page hears of them before.
+        #[cfg(not(target_arch = "wasm32"))]
+        let dropped: Vec<_> =
+            dropped.into_iter().filter(|file| !self.take_dropped_folder(file.path())).collect();
         if dropped.is_empty() {
             return;
         }
@@ -33,6 +37,19 @@ impl PinPose {
         });
     }
 
+    /// True if it was one.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn take_dropped_folder(&mut self, path: &std::path::Path) -> bool {
+        if !path.is_dir() {
+            return false;
+        }
+        match platform::open_folder(path) {
+            Ok(tree) => self.take_folder(tree),
+            Err(problem) => self.notify(Notice::error(problem)),
+        }
+        true
+    }
+
     /// Gives complete loads to the session.
     pub(in crate::app) fn take_loaded(&mut self) {
         let (decoded, complete) = self.loading.poll(self.scenes.is_switching());
@@ -46,7 +63,7 @@ impl PinPose {
             self.depth_maps.insert(sha256, depth);
         }
         for mut load in complete {
-            if load.is_of(Origin::Workspace) && !self.make_room(&mut load) {
+            if load.is_of(Origin::Workspace) && !self.make_room(&mut load.has_asked_for_room) {
                 self.loading.loads.push(load);
                 continue;
             }
@@ -86,16 +103,16 @@ impl PinPose {
         }
     }
 
-    /// A workspace opens in a scene of its own: the open one is kept. False while that one is being saved.
-    fn make_room(&mut self, load: &mut Load) -> bool {
-        if self.session.scene().is_empty() {
-            return true;
-        }
+    /// A workspace or a data set opens in a scene of its own: the open one is kept. False while that one is being saved.
+    pub(in crate::app) fn make_room(&mut self, has_asked: &mut bool) -> bool {
         if self.scenes.is_switching() {
             return false;
         }
-        if !load.has_asked_for_room {
-            load.has_asked_for_room = true;
+        if self.session.scene().is_empty() {
+            return true;
+        }
+        if !*has_asked {
+            *has_asked = true;
             self.new_scene();
             return self.session.scene().is_empty();
         }

@@ -2,6 +2,7 @@
 
 mod background;
 mod export;
+mod file_tree;
 mod folder;
 mod preferences;
 
@@ -13,6 +14,7 @@ use super::{EXAMPLE_PATH, FileBytes, SceneId, Storage, UpdateOffer};
 
 pub use background::Background;
 pub use export::{ExportFolder, GrowingDownload};
+pub use file_tree::{open_folder, pick_folder, watch_dropped_folders};
 pub use folder::FolderStorage;
 pub use preferences::{read_stored_preference, write_stored_preference};
 

@@ -3,6 +3,7 @@
 mod background;
 mod browser_storage;
 mod export;
+mod file_tree;
 mod files;
 mod indexed_db;
 
@@ -16,6 +17,7 @@ use super::{SceneId, Storage, UpdateOffer};
 pub use background::Background;
 pub use browser_storage::{read_stored_preference, write_stored_preference};
 pub use export::{ExportFolder, GrowingDownload};
+pub use file_tree::{pick_folder, watch_dropped_folders};
 pub use files::{download, fetch_example, pick_files};
 
 /// What the boot script offers; see `web/page/boot.js`.

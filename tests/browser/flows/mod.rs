@@ -1,6 +1,7 @@
 //! The flows: what a user does with the page, on which backends.
 
 mod bad_input;
+mod datasets;
 mod expert;
 mod idle;
 mod large;
@@ -68,6 +69,9 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "large-photo", large::large_photo_flow),
     Flow::on(WEBGPU, "expert", expert::three_samples),
     Flow::on(BOTH, "expert-all", expert::all_samples).long(),
+    Flow::on(WEBGL, "dataset-folder", datasets::folder),
+    Flow::on(WEBGL, "dataset-zip", datasets::zip),
+    Flow::on(WEBGL, "dataset-thousand", datasets::thousand_frames).long(),
     Flow::on(WEBGL, "bad-input", bad_input::bad_files),
     Flow::on(WEBGL, "bad-calls", bad_input::bad_calls),
     Flow::on(WEBGL, "offline", safety::offline),
