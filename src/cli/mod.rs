@@ -3,6 +3,7 @@
 mod convert;
 mod inspect;
 mod open;
+mod pins;
 mod render;
 
 use std::ffi::OsString;
@@ -17,6 +18,7 @@ pinpose convert IN… OUT              read files or folders, write poses (.json
 pinpose render IN… --out FOLDER      draw each photo with its objects
         [--kind overlay|silhouette|mask|visible_mask|depth] [--json]
         one PNG per photo, for masks and silhouettes one per object
+pinpose pins FILE                    2D-3D pairs and a camera (JSON) to a pose, residuals and covariance
 pinpose --help | --version
 ";
 
@@ -55,6 +57,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
         lexopt::Arg::Value(verb) => match verb.to_str() {
             Some("inspect") => inspect::run(parser),
             Some("convert") => convert::run(parser),
+            Some("pins") => pins::run(parser),
             Some("render") => render::run(parser),
             _ => Err(Failure::Usage(format!("there is no verb \"{}\"", verb.to_string_lossy()))),
         },

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::scene::{MeshAsset, PhotoAsset};
 
-pub use camera_json::CameraFile;
+pub use camera_json::{CameraFile, read_camera};
 pub use companions::{FileWithCompanions, kept, with_companions};
 pub use document::{DOCUMENT_SCHEMA, Document, Keep, ViewSettings, read_document, write_document};
 pub use error::FormatError;

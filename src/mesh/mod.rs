@@ -16,6 +16,7 @@ mod paint;
 mod painted;
 mod ply;
 mod ray_cast;
+mod simplify;
 mod stl;
 #[cfg(test)]
 pub(crate) mod test_shapes;
@@ -37,6 +38,7 @@ pub use load::{LoadedMesh, load};
 pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};
 pub use paint::{Material, Paint};
 pub use ray_cast::RayHit;
+pub use simplify::simplified;
 pub use textures::MAX_TEXTURE_SIDE_PX;
 pub use write::write_ply;
 
