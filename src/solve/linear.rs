@@ -16,7 +16,7 @@ fn cholesky<const N: usize>(a: &Matrix<N>) -> Option<Matrix<N>> {
             }
             if i == j {
                 // What is left of the diagonal is rounding if it is this small beside what it was: no information.
-                if !(sum > 1e-14 * a[i][i] && sum.is_finite()) {
+                if sum <= 1e-14 * a[i][i] || !sum.is_finite() {
                     return None;
                 }
                 lower[i][i] = sum.sqrt();
@@ -91,7 +91,7 @@ pub fn symmetric_eigen<const N: usize>(a: &Matrix<N>) -> ([f64; N], Matrix<N>) {
         let off_diagonal: f64 =
             (0..N).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| a[i][j].powi(2)).sum();
         let diagonal: f64 = (0..N).map(|i| a[i][i].powi(2)).sum();
-        if !(off_diagonal > 1e-32 * diagonal) {
+        if off_diagonal <= 1e-32 * diagonal || !diagonal.is_finite() {
             break;
         }
         for p in 0..N {

@@ -3,6 +3,7 @@
 //! This room knows meshes, photographs and cameras as data. It has no clock, no screen and no chance: time budgets come as
 //! a function that says whether to go on, and seeds as arguments.
 
+pub mod contour;
 mod least_squares;
 mod linear;
 mod motion;

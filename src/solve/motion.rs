@@ -16,7 +16,7 @@ pub fn moved_about(pose: &Pose, pivot_camera_mm: DVec3, step: &[f64; 6]) -> Pose
 /// The pixel of a point and its derivative by the point, one row per pixel axis. `None` for a point that is not before the
 /// camera.
 pub fn project_with_jacobian(camera: &Intrinsics, point_camera_mm: DVec3) -> Option<(DVec2, [DVec3; 2])> {
-    if !(point_camera_mm.z >= NEAR_MM) {
+    if point_camera_mm.z < NEAR_MM || !point_camera_mm.is_finite() {
         return None;
     }
     let pixel = camera.project(point_camera_mm)?;
@@ -83,10 +83,8 @@ fn shifted_pivot(pivot: DVec3) -> Matrix<6> {
         row[i] = 1.0;
     }
     let cross = DMat3::from_cols(pivot.cross(DVec3::X), pivot.cross(DVec3::Y), pivot.cross(DVec3::Z));
-    for row in 0..3 {
-        for column in 0..3 {
-            jacobian[row + 3][column] = cross.col(column)[row];
-        }
+    for (row, cross_row) in jacobian[3..].iter_mut().zip(cross.transpose().to_cols_array_2d()) {
+        row[..3].copy_from_slice(&cross_row);
     }
     jacobian
 }

@@ -70,7 +70,7 @@ pub fn solve_focal(
     let variance = (equations.cost + 4.0 * options.click_sigma_px.powi(2)) / (surplus + 4.0);
     let covariance = inverse(&equations.h).ok_or(FocalError::NotDetermined)?;
     let relative_sigma = (covariance[6][6] * variance).sqrt();
-    if !(relative_sigma <= LARGEST_SIGMA) {
+    if relative_sigma > LARGEST_SIGMA || !relative_sigma.is_finite() {
         return Err(FocalError::NotDetermined);
     }
     Ok(FocalSolution {
@@ -111,7 +111,7 @@ fn refined(
     let sightings: Vec<Sighting> = pins.iter().map(sighting).collect();
     let click_sigma_px = options.click_sigma_px;
     let fitting = Fitting { camera: &camera, pins, kernel: Kernel::Square, prior: None, click_sigma_px };
-    let start = sqpnp(&sightings).into_iter().find_map(|pose| fitting.from_within(pose, 5))?;
+    let start = sqpnp(&sightings).into_iter().find_map(|pose| fitting.descend_within(pose, 5))?;
     let pivot = middle(pins)?;
     let limits = Limits { iterations: 60, relative_decrease: 1e-10, good_enough: 1e-14 * pins.len() as f64 };
     levenberg_marquardt(

@@ -35,7 +35,7 @@ pub fn misclicks(camera: &Intrinsics, pins: &[Pin], options: &PinOptions) -> Vec
     };
     let best = finalists(camera, pins, options)
         .into_iter()
-        .filter_map(|pose| rough.from_within(pose, 15))
+        .filter_map(|pose| rough.descend_within(pose, 15))
         .min_by(|a, b| a.equations.cost.total_cmp(&b.equations.cost));
     best.map_or_else(Vec::new, |fit| outside(camera, pins, &fit.pose, options))
 }
@@ -91,7 +91,7 @@ fn outside(camera: &Intrinsics, pins: &[Pin], pose: &Pose, options: &PinOptions)
 fn plain_fit(camera: &Intrinsics, pins: &[Pin], start: Pose, options: &PinOptions) -> Option<Fit> {
     let kernel = Kernel::Square;
     let fitting = Fitting { camera, pins, kernel, prior: None, click_sigma_px: options.click_sigma_px };
-    (pins.len() >= 4).then(|| fitting.from(start)).flatten()
+    (pins.len() >= 4).then(|| fitting.descend(start)).flatten()
 }
 
 /// The squared distance of a pin from where a pose without it sees it, in units of what is expected.

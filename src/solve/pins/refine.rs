@@ -99,11 +99,11 @@ pub struct Fit {
 
 impl Fitting<'_> {
     /// Goes down from a start; `None` if a pin is behind the camera there.
-    pub fn from(&self, start: Pose) -> Option<Fit> {
-        self.from_within(start, 40)
+    pub fn descend(&self, start: Pose) -> Option<Fit> {
+        self.descend_within(start, 40)
     }
 
-    pub fn from_within(&self, start: Pose, iterations: u32) -> Option<Fit> {
+    pub fn descend_within(&self, start: Pose, iterations: u32) -> Option<Fit> {
         let pivot_object_mm = middle(self.pins)?;
         let limits = Limits {
             iterations,

@@ -114,10 +114,10 @@ impl Solver<'_> {
         let fitting = self.fitting(Kernel::Square, None);
         let mut minima: Vec<Fit> = Vec::new();
         for start in starts {
-            minima = with_new(minima, fitting.from(start));
+            minima = with_new(minima, fitting.descend(start));
         }
         if let Some(best) = minima.first().cloned() {
-            minima = with_new(minima, self.flipped(&best).and_then(|start| fitting.from(start)));
+            minima = with_new(minima, self.flipped(&best).and_then(|start| fitting.descend(start)));
         }
         // Clicks that are somewhat off, though no mistakes, pull less than in proportion to their square.
         let width = DOUBTFUL_SIGMAS * self.noise_squared(minima.first()).sqrt();
@@ -129,7 +129,7 @@ impl Solver<'_> {
         };
         minima
             .into_iter()
-            .map(|fit| if is_rough(&fit) { robust.from(fit.pose).unwrap_or(fit) } else { fit })
+            .map(|fit| if is_rough(&fit) { robust.descend(fit.pose).unwrap_or(fit) } else { fit })
             .collect()
     }
 
@@ -195,7 +195,7 @@ impl Solver<'_> {
 
     /// From the normal equations of all pins in use, whatever their kernel's weights, scaled by the residuals.
     fn covariance(&self, best: &Fit) -> Option<TwistCovariance> {
-        let fit = self.fitting(Kernel::Square, None).from_within(best.pose, 0)?;
+        let fit = self.fitting(Kernel::Square, None).descend_within(best.pose, 0)?;
         let scale = self.noise_squared(Some(&fit));
         let covariance = inverse(&fit.equations.h)?.map(|row| row.map(|value| value * scale));
         Some(TwistCovariance::from_steps_about(fit.pivot_camera_mm, &covariance))
@@ -211,7 +211,7 @@ impl Solver<'_> {
         // Two pins can be met by place, depth and roll alone; more have something to say about the tilt.
         let tilt_sigma_rad = if pins < 3 { 0.005 } else { 0.3 };
         let prior = Prior::new(start, pivot, tilt_sigma_rad);
-        let fit = self.fitting(Kernel::Square, Some(prior)).from(start).ok_or(PinError::NoPose)?;
+        let fit = self.fitting(Kernel::Square, Some(prior)).descend(start).ok_or(PinError::NoPose)?;
         Ok(fit.pose)
     }
 

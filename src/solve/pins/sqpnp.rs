@@ -140,12 +140,14 @@ impl Problem {
         let bend = (bend + bend.transpose()) * 0.5;
         let trace = bend.x_axis.x + bend.y_axis.y + bend.z_axis.z;
         let mut equations = NormalEquations { cost: dot(&r, &omega_r), ..NormalEquations::ZERO };
-        for i in 0..3 {
-            equations.g[i] = dot(&by_axis[i], &omega_r);
-            for j in 0..3 {
-                let curvature = bend.col(j)[i] - if i == j { trace } else { 0.0 };
-                equations.h[i][j] = dot(&by_axis[i], &omega_by_axis[j]) + curvature;
-            }
+        let curvature = (bend - DMat3::from_diagonal(DVec3::splat(trace))).to_cols_array_2d();
+        equations.g = by_axis.map(|row| dot(&row, &omega_r));
+        for ((h_row, row), curvature) in equations.h.iter_mut().zip(&by_axis).zip(curvature) {
+            let columns = omega_by_axis.iter().zip(curvature);
+            h_row
+                .iter_mut()
+                .zip(columns)
+                .for_each(|(h, (column, curvature))| *h = dot(row, column) + curvature);
         }
         equations
     }
