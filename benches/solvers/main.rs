@@ -12,8 +12,9 @@ mod chance;
 mod numbers;
 mod opencv;
 mod pins;
+mod real;
 
-const PARTS: [(&str, fn()); 1] = [("pins", pins::pins)];
+const PARTS: [(&str, fn()); 2] = [("pins", pins::pins), ("real", real::real)];
 
 fn main() {
     let named: Vec<String> = std::env::args().skip(1).filter(|name| !name.starts_with('-')).collect();

@@ -68,21 +68,43 @@ pub struct DepthView {
 pub const OBJECT_ID: u32 = 1;
 const OCCLUDER_ID: u32 = 2;
 
+/// What may be before an object. It does not move while the object does, so it is drawn once.
+#[derive(Debug, Clone)]
+pub struct Occluders(Option<RasterImage>);
+
+impl Occluders {
+    pub fn draw(camera: &Intrinsics, occluders: &[(&ContourModel, Pose)], region: PixelRegion) -> Self {
+        let items: Vec<RasterItem<'_>> = occluders
+            .iter()
+            .map(|&(model, camera_from_object)| RasterItem {
+                mesh: &model.mesh,
+                camera_from_object,
+                id: OCCLUDER_ID,
+            })
+            .collect();
+        Self((!items.is_empty()).then(|| rasterize(camera, &items, region)))
+    }
+}
+
 impl DepthView {
+    /// Of a region of the picture; the occluders were drawn for the same one.
     pub fn draw(
         camera: &Intrinsics,
         model: &ContourModel,
         camera_from_object: Pose,
-        occluders: &[(&ContourModel, Pose)],
+        occluders: &Occluders,
         region: PixelRegion,
     ) -> Self {
-        let mut items = vec![RasterItem { mesh: &model.mesh, camera_from_object, id: OBJECT_ID }];
-        items.extend(occluders.iter().map(|&(other, camera_from_object)| RasterItem {
-            mesh: &other.mesh,
-            camera_from_object,
-            id: OCCLUDER_ID,
-        }));
-        Self { image: rasterize(camera, &items, region), region }
+        let item = RasterItem { mesh: &model.mesh, camera_from_object, id: OBJECT_ID };
+        let mut image = rasterize(camera, &[item], region);
+        let Some(other) = &occluders.0 else { return Self { image, region } };
+        let pixels = image.depth_mm.iter_mut().zip(&mut image.ids).zip(other.depth_mm.iter().zip(&other.ids));
+        for ((depth_mm, id), (&other_depth_mm, &other_id)) in pixels {
+            if other_id != 0 && (*id == 0 || other_depth_mm < *depth_mm) {
+                (*depth_mm, *id) = (other_depth_mm, other_id);
+            }
+        }
+        Self { image, region }
     }
 
     /// The number and the depth of what is seen at the pixel nearest to this place; 0 where nothing is, `None` outside.
@@ -245,9 +267,15 @@ mod tests {
     use crate::mesh::MeshData;
     use crate::mesh::test_shapes::{cube, sphere};
 
+    fn seen(model: &ContourModel, pose: &Pose, others: &[(&ContourModel, Pose)]) -> DepthView {
+        let region = PixelRegion::of_camera(&camera());
+        let occluders = Occluders::draw(&camera(), others, region);
+        DepthView::draw(&camera(), model, *pose, &occluders, region)
+    }
+
     fn outline(mesh: &Mesh, pose: &Pose) -> Vec<ContourPoint> {
         let model = ContourModel::new(mesh).unwrap();
-        let view = DepthView::draw(&camera(), &model, *pose, &[], PixelRegion::of_camera(&camera()));
+        let view = seen(&model, pose, &[]);
         let mut points = model.points(&camera(), pose, &view, 2.0);
         points.retain(|point| point.kind == EdgeKind::Outline);
         points
@@ -314,7 +342,7 @@ mod tests {
         let rotation = DMat3::from_rotation_x(0.5) * DMat3::from_rotation_y(0.6);
         let pose = Pose { rotation, translation_mm: DVec3::new(20.0, 10.0, 700.0) };
         let model = ContourModel::new(&mesh).unwrap();
-        let view = DepthView::draw(&camera(), &model, pose, &[], PixelRegion::of_camera(&camera()));
+        let view = seen(&model, &pose, &[]);
         let points = model.points(&camera(), &pose, &view, 2.0);
         let corners: Vec<DVec2> = mesh
             .positions_mm()
@@ -339,9 +367,8 @@ mod tests {
         let ball = ContourModel::new(&sphere(40.0, 40, 80)).unwrap();
         let (far, near) =
             (Pose::from_translation(DVec3::Z * 700.0), Pose::from_translation(DVec3::new(40.0, 0.0, 500.0)));
-        let region = PixelRegion::of_camera(&camera());
-        let alone = DepthView::draw(&camera(), &ball, far, &[], region);
-        let behind = DepthView::draw(&camera(), &ball, far, &[(&ball, near)], region);
+        let alone = seen(&ball, &far, &[]);
+        let behind = seen(&ball, &far, &[(&ball, near)]);
         let [all, some] = [alone, behind].map(|view| ball.points(&camera(), &far, &view, 1.0));
         assert!(some.len() < all.len() * 2 / 3 && some.len() > all.len() / 4, "{} {}", some.len(), all.len());
         // Circles of 33 and 46 px, 46 px apart, cross 14 px from the middle of the one behind.

@@ -8,6 +8,7 @@ mod least_squares;
 mod linear;
 mod motion;
 pub mod pins;
+pub mod snap;
 #[cfg(test)]
 mod test_chance;
 
