@@ -165,13 +165,14 @@ impl ContourModel {
         for edge in &self.edges {
             let faces_eye = edge.faces.map(|face| self.normals[face].dot(eye - edge.ends[0]) > 0.0);
             let is_silhouette = faces_eye[0] != faces_eye[1] || edge.faces[0] == edge.faces[1];
-            if !is_silhouette && !(edge.is_sharp && faces_eye[0]) {
+            let is_crease = edge.is_sharp && faces_eye[0];
+            if !is_silhouette && !is_crease {
                 continue;
             }
             let ends = edge.ends.map(|end| camera.project(camera_from_object.transform_point(end)));
             let [Some(from), Some(to)] = ends else { continue };
             let length = from.distance(to);
-            if !(length < 1e5) {
+            if length > 1e5 || !length.is_finite() {
                 continue;
             }
             while until_next < length {

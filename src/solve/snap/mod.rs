@@ -79,11 +79,11 @@ pub struct SnapOutcome {
     pub moved_mm: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Progress {
     /// The part that is done, 0 to 1.
     Working(f64),
-    Done(SnapOutcome),
+    Done(Box<SnapOutcome>),
 }
 
 /// What is looked at in a number of steps.
@@ -181,7 +181,7 @@ impl Snap {
     pub fn step(&mut self, go_on: &mut dyn FnMut() -> bool) -> Progress {
         loop {
             if let Some(outcome) = self.advance() {
-                return Progress::Done(outcome);
+                return Progress::Done(Box::new(outcome));
             }
             if !go_on() {
                 let total: u32 = STAGES.iter().map(|stage| stage.steps).sum();
@@ -195,7 +195,7 @@ impl Snap {
     pub fn run(mut self) -> SnapOutcome {
         loop {
             if let Progress::Done(outcome) = self.step(&mut || true) {
-                return outcome;
+                return *outcome;
             }
         }
     }
@@ -249,7 +249,7 @@ impl Snap {
                 &self.pose,
                 pivot,
                 &edges,
-                (stage.edge_reach_px, look.independence),
+                (stage.edge_reach_px, look.independence * EDGE_SHARE),
             );
             edges::add_edges(
                 &mut equations,

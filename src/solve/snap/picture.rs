@@ -31,7 +31,7 @@ impl Picture {
         let photo_rect = ImageRect::of_photo(photo.width, photo.height);
         let (min, max) =
             ((object.min - margin).max(photo_rect.min), (object.max + margin).min(photo_rect.max));
-        if !((max - min).min_element() >= 8.0) {
+        if (max - min).min_element() < 8.0 || !min.is_finite() || !max.is_finite() {
             return None;
         }
         let mut cut = cut_out(photo, min, max);

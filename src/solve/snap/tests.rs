@@ -112,7 +112,7 @@ fn slices_and_one_go_end_alike_and_pins_pull() {
                 assert!(part > last_part && part <= 1.0);
                 last_part = part;
             }
-            Progress::Done(outcome) => break outcome,
+            Progress::Done(outcome) => break *outcome,
         }
     };
     assert_eq!(outcome, at_once);
