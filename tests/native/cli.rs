@@ -137,7 +137,7 @@ fn pins_become_a_pose_with_its_residuals_and_covariance() {
     assert!(answer["rms_px"].as_f64().unwrap() < 1e-5);
     assert!(answer["covariance"][5][5].as_f64().unwrap() > 0.0);
 
-    let mut refused = |change: &dyn Fn(&mut Value), expected: &str| {
+    let refused = |change: &dyn Fn(&mut Value), expected: &str| {
         let mut changed = input.clone();
         change(&mut changed);
         std::fs::write(&path, changed.to_string()).unwrap();
