@@ -10,7 +10,7 @@
 //! | 8 | [`ui`] | panels, viewport, dialogs, theme |
 //! | 7 | [`render`], [`interact`] | wgpu passes (knows no UI); gestures to commands (knows no egui) |
 //! | 6 | [`session`] | a scene being worked on: commands, undo, imports |
-//! | 5 | [`formats`], [`metrics`] | files to data and back; how far a pose is from another |
+//! | 5 | [`formats`], [`solve`], [`metrics`] | files to data and back; poses from pins and pictures; how far a pose is from another |
 //! | 4 | [`scene`], [`raster`] | plain data; the CPU rasteriser, the renderer's reference |
 //! | 3 | [`mesh`] | meshes, a loader per format, ray casts |
 //! | 2 | [`photo`] | photographs |
@@ -38,4 +38,5 @@ pub mod raster;
 pub mod render;
 pub mod scene;
 pub mod session;
+pub mod solve;
 pub mod ui;

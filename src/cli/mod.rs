@@ -4,6 +4,7 @@ mod convert;
 mod evaluate;
 mod inspect;
 mod open;
+mod pins;
 mod render;
 mod source;
 
@@ -26,6 +27,7 @@ pinpose render IN… --out FOLDER      draw each photo with its objects
 pinpose evaluate --truth T POSES… [--json | --csv]
         how far poses are from the truth: rotation, translation, ADD, ADI, AD, MSSD, MSPD, projection, VSD, CUS;
         --truth may come several times; photos and meshes are given with either
+pinpose pins FILE                    2D-3D pairs and a camera (JSON) to a pose, residuals and covariance
 pinpose --help | --version
 ";
 
@@ -65,6 +67,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
             Some("inspect") => inspect::run(parser),
             Some("convert") => convert::run(parser),
             Some("evaluate") => evaluate::run(parser),
+            Some("pins") => pins::run(parser),
             Some("render") => render::run(parser),
             _ => Err(Failure::Usage(format!("there is no verb \"{}\"", verb.to_string_lossy()))),
         },

@@ -31,7 +31,7 @@ use std::sync::Arc;
 use crate::scene::{MeshAsset, PhotoAsset, file_stem};
 
 pub use archive::Archive;
-pub use camera::CameraFile;
+pub use camera::{CameraFile, read_camera};
 pub use companions::{FileWithCompanions, kept, with_companions};
 pub use document::{DOCUMENT_SCHEMA, Document, Keep, ViewSettings, read_document, write_document};
 pub use error::FormatError;

@@ -17,6 +17,7 @@ mod painted;
 mod ply;
 mod point_tree;
 mod ray_cast;
+mod simplify;
 mod stl;
 #[cfg(test)]
 pub(crate) mod test_shapes;
@@ -39,6 +40,7 @@ pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};
 pub use paint::{Material, Paint};
 pub use point_tree::PointTree;
 pub use ray_cast::RayHit;
+pub use simplify::simplified;
 pub use textures::MAX_TEXTURE_SIDE_PX;
 pub use write::write_ply;
 

@@ -131,3 +131,49 @@ fn render_draws_masks_and_overlays_of_linemod() {
     assert!((9_000..11_000).contains(&depth.get_pixel(220, 180).0[0]));
     assert_eq!(depth.get_pixel(400, 400).0, [0]);
 }
+
+#[test]
+fn pins_become_a_pose_with_its_residuals_and_covariance() {
+    let folder = empty_folder("pins");
+    let path = folder.join("pins.json");
+    // The pose is a turn of a quarter about z, 700 mm away; pixels follow from K [R|t] by hand.
+    let pins =
+        [[60.0, 0.0, 0.0], [0.0, 60.0, 0.0], [0.0, 0.0, 60.0], [60.0, 60.0, 30.0], [-60.0, -40.0, 10.0]].map(
+            |[x, y, z]: [f64; 3]| {
+                let pixel = [520.5 * -y / (700.0 + z) + 301.75, 533.25 * x / (700.0 + z) + 222.5];
+                serde_json::json!({"point": [x, y, z], "pixel": pixel})
+            },
+        );
+    let mut input: Value = serde_json::from_str(CAMERA_JSON).unwrap();
+    input["pins"] = Value::from(pins.to_vec());
+    std::fs::write(&path, input.to_string()).unwrap();
+    let output = pinpose(&["pins", &path.display().to_string()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let expected = [[0.0, -1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 700.0]];
+    for (row, numbers) in expected.iter().enumerate() {
+        for (column, number) in numbers.iter().enumerate() {
+            let found = answer["pose"][row][column].as_f64().unwrap();
+            // The iteration ends at a ten-millionth of a pixel.
+            assert!((found - number).abs() < 1e-4, "{answer:#}");
+        }
+    }
+    assert!(answer["rms_px"].as_f64().unwrap() < 1e-5);
+    assert!(answer["covariance"][5][5].as_f64().unwrap() > 0.0);
+
+    let refused = |change: &dyn Fn(&mut Value), expected: &str| {
+        let mut changed = input.clone();
+        change(&mut changed);
+        std::fs::write(&path, changed.to_string()).unwrap();
+        let output = pinpose(&["pins", &path.display().to_string()]);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!((output.status.code(), stderr.lines().count()), (Some(1), 1), "{stderr}");
+        assert!(stderr.contains("pins.json") && stderr.contains(expected), "{stderr}");
+    };
+    refused(&|value| value["pins"][2]["pixel"] = Value::from("left"), "\"pins\"[2].\"pixel\": 2 numbers");
+    refused(&|value| value["pins"] = serde_json::json!([]), "start from");
+    refused(&|value| value["start"] = serde_json::json!([1, 2]), "\"start\": four rows");
+    refused(&|value| value["pins"][0]["weight"] = Value::from(-1), "\"weight\": a positive number");
+    refused(&|value| value["estimate_focal"] = Value::from(true), "six or more");
+    refused(&|value| value["fx"] = Value::from(0), "focal length");
+}

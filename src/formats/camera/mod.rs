@@ -7,7 +7,8 @@ mod opencv;
 use super::FormatError;
 use crate::math::{Distortion, Intrinsics};
 
-pub(super) use json::{looks_like_camera, read_camera};
+pub(super) use json::looks_like_camera;
+pub use json::read_camera;
 pub(super) use matrix::{read_matrix_array, read_matrix_text};
 pub(super) use opencv::read_opencv_yaml;
 

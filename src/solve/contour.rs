@@ -1,0 +1,378 @@
+//! Where the edges of an object are seen: points exactly on the silhouette edges of its mesh and on its creases.
+//!
+//! A silhouette edge lies between a face that looks at the camera and one that looks away. Points on it are exact for the
+//! mesh, whatever the resolution of the depth map, which only says whether a point is hidden.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use super::motion::project_with_jacobian;
+use crate::math::{Intrinsics, Pose};
+use crate::mesh::{Mesh, simplified};
+use crate::raster::{PixelRegion, RasterImage, RasterItem, rasterize};
+
+/// A mesh of more triangles is simplified before solvers look at it.
+pub const MAX_TRIANGLES: usize = 8000;
+/// Faces that meet at a larger angle have an edge of their own; smaller ones stand for a round surface.
+const CREASE_COSINE: f64 = 0.866;
+
+/// What kind of edge a point is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EdgeKind {
+    /// The object ends here, and what is behind begins.
+    Outline,
+    /// A part of the object ends here before another part of it.
+    Inner,
+    /// Two faces meet here.
+    Crease,
+}
+
+/// A visible point on an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContourPoint {
+    /// In the `object` frame.
+    pub point_mm: DVec3,
+    pub pixel: DVec2,
+    /// Of length one in the image; for a silhouette it points away from the part that ends here.
+    pub normal: DVec2,
+    pub kind: EdgeKind,
+}
+
+/// A mesh prepared for many looks at its edges.
+#[derive(Debug, Clone)]
+pub struct ContourModel {
+    mesh: Mesh,
+    /// Unit normals.
+    normals: Vec<DVec3>,
+    edges: Vec<Edge>,
+    diameter_mm: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    ends: [DVec3; 2],
+    /// The faces at it; the same one twice at an open edge.
+    faces: [usize; 2],
+    is_sharp: bool,
+}
+
+/// What the camera sees of an object and of what is before it, pixel by pixel.
+#[derive(Debug, Clone)]
+pub struct DepthView {
+    pub image: RasterImage,
+    pub region: PixelRegion,
+}
+
+/// In [`RasterImage::ids`]: the object itself. Occluders have higher numbers.
+pub const OBJECT_ID: u32 = 1;
+const OCCLUDER_ID: u32 = 2;
+
+/// What may be before an object. It does not move while the object does, so it is drawn once.
+#[derive(Debug, Clone)]
+pub struct Occluders(Option<RasterImage>);
+
+impl Occluders {
+    pub fn draw(camera: &Intrinsics, occluders: &[(&ContourModel, Pose)], region: PixelRegion) -> Self {
+        let items: Vec<RasterItem<'_>> = occluders
+            .iter()
+            .map(|&(model, camera_from_object)| RasterItem {
+                mesh: &model.mesh,
+                camera_from_object,
+                id: OCCLUDER_ID,
+            })
+            .collect();
+        Self((!items.is_empty()).then(|| rasterize(camera, &items, region)))
+    }
+}
+
+impl DepthView {
+    /// Of a region of the picture; the occluders were drawn for the same one.
+    pub fn draw(
+        camera: &Intrinsics,
+        model: &ContourModel,
+        camera_from_object: Pose,
+        occluders: &Occluders,
+        region: PixelRegion,
+    ) -> Self {
+        let item = RasterItem { mesh: &model.mesh, camera_from_object, id: OBJECT_ID };
+        let mut image = rasterize(camera, &[item], region);
+        let Some(other) = &occluders.0 else { return Self { image, region } };
+        let pixels = image.depth_mm.iter_mut().zip(&mut image.ids).zip(other.depth_mm.iter().zip(&other.ids));
+        for ((depth_mm, id), (&other_depth_mm, &other_id)) in pixels {
+            if other_id != 0 && (*id == 0 || other_depth_mm < *depth_mm) {
+                (*depth_mm, *id) = (other_depth_mm, other_id);
+            }
+        }
+        Self { image, region }
+    }
+
+    /// The number and the depth of what is seen at the pixel nearest to this place; 0 where nothing is, `None` outside.
+    pub fn at(&self, pixel: DVec2) -> Option<(u32, f64)> {
+        let x = pixel.x.round() as i64 - i64::from(self.region.x0);
+        let y = pixel.y.round() as i64 - i64::from(self.region.y0);
+        let (width, height) = (i64::from(self.region.width), i64::from(self.region.height));
+        if !(0..width).contains(&x) || !(0..height).contains(&y) {
+            return None;
+        }
+        let i = (y * width + x) as usize;
+        Some((*self.image.ids.get(i)?, f64::from(*self.image.depth_mm.get(i)?)))
+    }
+}
+
+impl ContourModel {
+    /// `None` for a mesh without a single proper triangle.
+    pub fn new(mesh: &Mesh) -> Option<Self> {
+        let mesh = simplified(mesh, MAX_TRIANGLES)?;
+        let normals: Vec<DVec3> = mesh
+            .triangles()
+            .iter()
+            .map(|&triangle| {
+                let [a, b, c] = mesh.corners(triangle);
+                (b - a).cross(c - a).normalize_or_zero()
+            })
+            .collect();
+        let edges = edges(&mesh, &normals);
+        let diameter_mm = 2.0 * mesh.sphere().radius;
+        Some(Self { mesh, normals, edges, diameter_mm })
+    }
+
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    pub fn diameter_mm(&self) -> f64 {
+        self.diameter_mm
+    }
+
+    /// The middle of the mesh's box, in the `object` frame.
+    pub fn center_mm(&self) -> DVec3 {
+        self.mesh.bounds().center()
+    }
+
+    /// Points on all visible edges, about `spacing_px` apart.
+    pub fn points(
+        &self,
+        camera: &Intrinsics,
+        camera_from_object: &Pose,
+        view: &DepthView,
+        spacing_px: f64,
+    ) -> Vec<ContourPoint> {
+        let eye = camera_from_object.inverse().translation_mm;
+        let mut points = Vec::new();
+        // Edges are short; the distance to the next point is carried on from one to the next.
+        let mut until_next = spacing_px / 2.0;
+        for edge in &self.edges {
+            let faces_eye = edge.faces.map(|face| self.normals[face].dot(eye - edge.ends[0]) > 0.0);
+            let is_silhouette = faces_eye[0] != faces_eye[1] || edge.faces[0] == edge.faces[1];
+            let is_crease = edge.is_sharp && faces_eye[0];
+            if !is_silhouette && !is_crease {
+                continue;
+            }
+            let ends = edge.ends.map(|end| camera.project(camera_from_object.transform_point(end)));
+            let [Some(from), Some(to)] = ends else { continue };
+            let length = from.distance(to);
+            if length > 1e5 || !length.is_finite() {
+                continue;
+            }
+            while until_next < length {
+                let point_mm = edge.ends[0].lerp(edge.ends[1], until_next / length);
+                let seen = Seen { camera, camera_from_object, view, faces_eye, is_silhouette };
+                points.extend(self.visible_point(edge, &seen, point_mm));
+                until_next += spacing_px;
+            }
+            until_next -= length;
+        }
+        points
+    }
+
+    fn visible_point(&self, edge: &Edge, seen: &Seen<'_>, point_mm: DVec3) -> Option<ContourPoint> {
+        let point_camera = seen.camera_from_object.transform_point(point_mm);
+        let (pixel, jacobian) = project_with_jacobian(seen.camera, point_camera)?;
+        let in_image = |direction: DVec3| {
+            let direction = seen.camera_from_object.rotation * direction;
+            DVec2::new(jacobian[0].dot(direction), jacobian[1].dot(direction))
+        };
+        // Away from the face that is seen: for a sharp edge square to the edge, for a round surface along its normal.
+        let front = if seen.faces_eye[0] { edge.faces[0] } else { edge.faces[1] };
+        let along = in_image(edge.ends[1] - edge.ends[0]).try_normalize()?;
+        let across_face = (edge.ends[1] - edge.ends[0]).cross(self.normals[front]);
+        let outward = in_image(self.away_from(front, across_face, point_mm));
+        let normal = if edge.is_sharp {
+            if along.perp().dot(outward) < 0.0 { -along.perp() } else { along.perp() }
+        } else {
+            in_image(self.normals[edge.faces[0]] + self.normals[edge.faces[1]]).try_normalize()?
+        };
+        let tolerance_mm = 0.02 * self.diameter_mm;
+        let is_hidden = |place: DVec2| match seen.view.at(place) {
+            Some((id, depth_mm)) => id != 0 && depth_mm < point_camera.z - tolerance_mm,
+            None => true,
+        };
+        if !seen.is_silhouette {
+            let visible = !is_hidden(pixel);
+            return visible.then_some(ContourPoint { point_mm, pixel, normal, kind: EdgeKind::Crease });
+        }
+        // On the inner side a round surface comes nearer at once, which hides nothing: only what is outside counts, and
+        // other objects on both sides.
+        let (outside, inside) = (pixel + normal * 1.5, pixel - normal * 1.5);
+        let is_occluded =
+            |place: DVec2| seen.view.at(place).is_none_or(|(id, _)| id > OBJECT_ID) && is_hidden(place);
+        if is_hidden(outside) || is_occluded(inside) {
+            return None;
+        }
+        let is_inner = seen.view.at(outside).is_some_and(|(id, _)| id == OBJECT_ID);
+        let kind = if is_inner { EdgeKind::Inner } else { EdgeKind::Outline };
+        Some(ContourPoint { point_mm, pixel, normal, kind })
+    }
+
+    /// A direction in the plane of a face, turned so that it leads out of the face.
+    fn away_from(&self, face: usize, direction: DVec3, point_mm: DVec3) -> DVec3 {
+        let [a, b, c] = self.mesh.corners(self.mesh.triangles()[face]);
+        if direction.dot(point_mm - (a + b + c) / 3.0) < 0.0 { -direction } else { direction }
+    }
+}
+
+/// What is the same for all points of an edge.
+struct Seen<'a> {
+    camera: &'a Intrinsics,
+    camera_from_object: &'a Pose,
+    view: &'a DepthView,
+    faces_eye: [bool; 2],
+    is_silhouette: bool,
+}
+
+fn edges(mesh: &Mesh, normals: &[DVec3]) -> Vec<Edge> {
+    let mut faces_at: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+    for (face, &[a, b, c]) in mesh.triangles().iter().enumerate() {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            faces_at.entry([from.min(to), from.max(to)]).or_default().push(face);
+        }
+    }
+    let position = |vertex: u32| mesh.positions_mm()[vertex as usize].as_dvec3();
+    faces_at
+        .into_iter()
+        .filter_map(|(ends, faces)| {
+            let (&first, &last) = (faces.first()?, faces.last()?);
+            let is_sharp = faces.len() != 2 || normals[first].dot(normals[last]) < CREASE_COSINE;
+            Some(Edge { ends: ends.map(position), faces: [first, last], is_sharp })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::super::test_chance::camera;
+    use super::*;
+    use crate::mesh::MeshData;
+    use crate::mesh::test_shapes::{cube, sphere};
+
+    fn seen(model: &ContourModel, pose: &Pose, others: &[(&ContourModel, Pose)]) -> DepthView {
+        let region = PixelRegion::of_camera(&camera());
+        let occluders = Occluders::draw(&camera(), others, region);
+        DepthView::draw(&camera(), model, *pose, &occluders, region)
+    }
+
+    fn outline(mesh: &Mesh, pose: &Pose) -> Vec<ContourPoint> {
+        let model = ContourModel::new(mesh).unwrap();
+        let view = seen(&model, pose, &[]);
+        let mut points = model.points(&camera(), pose, &view, 2.0);
+        points.retain(|point| point.kind == EdgeKind::Outline);
+        points
+    }
+
+    /// Mean and largest signed distance of the points outside of a shape's outline.
+    fn bias(points: &[ContourPoint], outside_px: impl Fn(DVec2) -> f64) -> (f64, f64) {
+        let distances: Vec<f64> = points.iter().map(|point| outside_px(point.pixel)).collect();
+        let largest = distances.iter().fold(0.0_f64, |max, d| max.max(d.abs()));
+        (distances.iter().sum::<f64>() / distances.len() as f64, largest)
+    }
+
+    #[test]
+    fn a_spheres_outline_is_where_its_tangent_cone_is() {
+        let center = DVec3::new(60.0, -40.0, 700.0);
+        let points = outline(&sphere(80.0, 120, 240), &Pose::from_translation(center));
+        // A circumference of 2π · 65 px at 2 px.
+        assert!((180..230).contains(&points.len()), "{}", points.len());
+        let angle = (80.0 / center.length()).asin();
+        let outside_px = |pixel: DVec2| {
+            // One radian is a focal length, near enough for an error of a thousandth of it.
+            (camera().unproject(pixel).angle_between(center) - angle) * 573.0
+        };
+        let (mean_px, largest_px) = bias(&points, outside_px);
+        // The target of the solvers; facets of 8000 triangles stand off a sphere of 65 px by 0.02 px.
+        assert!(mean_px.abs() < 0.03 && largest_px < 0.1, "{mean_px} {largest_px}");
+        for point in &points {
+            let radial = (point.pixel - camera().project(center).unwrap()).normalize();
+            // A triangle of this mesh turns by some 3°.
+            assert!(point.normal.dot(radial) > 0.995);
+        }
+    }
+
+    #[test]
+    fn a_cylinders_outline_is_where_its_tangent_planes_are() {
+        let (radius, half) = (40.0_f32, 60.0_f32);
+        let segments = 200_u32;
+        let ring = |y: f32| {
+            (0..segments).map(move |k| {
+                let angle = std::f32::consts::TAU * k as f32 / segments as f32;
+                glam::Vec3::new(radius * angle.cos(), y, radius * angle.sin())
+            })
+        };
+        let positions_mm = ring(-half).chain(ring(half)).collect();
+        let next = |k: u32| (k + 1) % segments;
+        let triangles = (0..segments)
+            .flat_map(|k| [[k, k + segments, next(k)], [next(k), k + segments, next(k) + segments]]);
+        let data = MeshData { positions_mm, triangles: triangles.collect(), ..MeshData::default() };
+        // Seen square to its axis, from a place on the optical axis: the outline's sides are two vertical lines.
+        let pose = Pose::from_translation(DVec3::Z * 600.0);
+        let points = outline(&Mesh::new(data).unwrap(), &pose);
+        let sides: Vec<ContourPoint> =
+            points.into_iter().filter(|point| point.normal.x.abs() > 0.99).collect();
+        assert!(sides.len() > 50, "{}", sides.len());
+        let half_width_px = camera().fx * 40.0 / f64::sqrt(600.0 * 600.0 - 40.0 * 40.0);
+        let (mean_px, largest_px) = bias(&sides, |pixel| (pixel.x - camera().cx).abs() - half_width_px);
+        // 200 facets stand off a circle of 38 px by 0.005 px.
+        assert!(mean_px.abs() < 0.03 && largest_px < 0.05, "{mean_px} {largest_px}");
+    }
+
+    #[test]
+    fn a_box_has_its_hull_as_outline_and_its_front_edges_as_creases() {
+        let mesh = cube().transformed(&glam::DAffine3::from_scale(DVec3::splat(50.0))).unwrap();
+        let rotation = DMat3::from_rotation_x(0.5) * DMat3::from_rotation_y(0.6);
+        let pose = Pose { rotation, translation_mm: DVec3::new(20.0, 10.0, 700.0) };
+        let model = ContourModel::new(&mesh).unwrap();
+        let view = seen(&model, &pose, &[]);
+        let points = model.points(&camera(), &pose, &view, 2.0);
+        let corners: Vec<DVec2> = mesh
+            .positions_mm()
+            .iter()
+            .map(|corner| camera().project(pose.transform_point(corner.as_dvec3())).unwrap())
+            .collect();
+        for point in points.iter().filter(|point| point.kind == EdgeKind::Outline) {
+            // No corner is farther out along the normal than the edge itself: the outline is the hull, exactly.
+            let farthest =
+                corners.iter().map(|corner| (*corner - point.pixel).dot(point.normal)).fold(0.0, f64::max);
+            assert!(farthest < 1e-6, "{farthest}");
+        }
+        let count = |kind| points.iter().filter(|point| point.kind == kind).count();
+        // Three edges meet in the corner in front, six make the hull.
+        assert!(
+            count(EdgeKind::Crease) > 60 && count(EdgeKind::Outline) > 120 && count(EdgeKind::Inner) == 0
+        );
+    }
+
+    #[test]
+    fn what_is_behind_something_has_no_contour() {
+        let ball = ContourModel::new(&sphere(40.0, 40, 80)).unwrap();
+        let (far, near) =
+            (Pose::from_translation(DVec3::Z * 700.0), Pose::from_translation(DVec3::new(40.0, 0.0, 500.0)));
+        let alone = seen(&ball, &far, &[]);
+        let behind = seen(&ball, &far, &[(&ball, near)]);
+        let [all, some] = [alone, behind].map(|view| ball.points(&camera(), &far, &view, 1.0));
+        assert!(some.len() < all.len() * 2 / 3 && some.len() > all.len() / 4, "{} {}", some.len(), all.len());
+        // Circles of 33 and 46 px, 46 px apart, cross 14 px from the middle of the one behind.
+        assert!(some.iter().all(|point| point.pixel.x < camera().cx + 16.0));
+    }
+}

@@ -1,0 +1,15 @@
+//! Solvers: the pose from pins, from a photograph's contours, and how sure it is.
+//!
+//! This room knows meshes, photographs and cameras as data. It has no clock, no screen and no chance: time budgets come as
+//! a function that says whether to go on, and seeds as arguments.
+
+pub mod contour;
+mod least_squares;
+mod linear;
+mod motion;
+pub mod pins;
+pub mod snap;
+#[cfg(test)]
+mod test_chance;
+
+pub use motion::TwistCovariance;
