@@ -367,7 +367,9 @@ mod tests {
 
     #[test]
     fn what_is_small_enough_stays_and_what_is_broken_does_no_harm() {
-        assert_eq!(simplified(&cube(), 12).unwrap().data(), cube().data());
+        let same = simplified(&cube(), 12).unwrap();
+        // Vertices may be numbered anew; whole numbers keep the volume exact.
+        assert_eq!((same.triangles().len(), same.positions_mm().len(), volume(&same)), (12, 8, 8.0));
         // A fan of doubled and degenerate triangles: whatever comes out is a mesh.
         let positions_mm = (0..40).map(|i| glam::Vec3::new(i as f32 % 5.0, (i / 5) as f32, 0.0)).collect();
         let triangles = (0..200_u32).map(|i| [i % 40, i * 7 % 40, i * 13 % 40]).collect();
