@@ -73,7 +73,8 @@ fn mask_count(document: &Value) -> usize {
 }
 
 fn notices(program: &mut Program) -> String {
-    program.state().notices.join("\n")
+    program.state();
+    program.said.join("\n")
 }
 
 fn zipped(files: &[(String, Vec<u8>)]) -> Vec<u8> {

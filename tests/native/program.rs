@@ -15,6 +15,8 @@ use pinpose::platform::{
 pub struct Program {
     pub harness: Harness<'static, PinPose>,
     pub calls: PageCalls,
+    /// Every message that was seen: on screen they do not stay.
+    pub said: Vec<String>,
 }
 
 impl Program {
@@ -28,7 +30,7 @@ impl Program {
         let harness = Harness::builder()
             .with_size([1024.0, 720.0])
             .build_eframe(|creation| PinPose::new(creation, start));
-        let mut program = Self { harness, calls };
+        let mut program = Self { harness, calls, said: Vec::new() };
         program.wait("it is ready", |state| !state.busy);
         program
     }
@@ -49,7 +51,12 @@ impl Program {
 
     pub fn state(&mut self) -> PageState {
         match self.ask(PageCall::State) {
-            PageAnswer::State(state) => state,
+            PageAnswer::State(state) => {
+                let new = state.notices.iter().filter(|notice| !self.said.contains(*notice)).cloned();
+                let new: Vec<String> = new.collect();
+                self.said.extend(new);
+                state
+            }
             other => panic!("{other:?}"),
         }
     }
