@@ -115,7 +115,7 @@ const SMALLEST_SCORE: f64 = 0.08;
 /// A better score by less than this is chance.
 const SMALLEST_GAIN: f64 = 0.01;
 /// Errors of neighbouring lines go together (a shadow, an object of the same colour), so each counts as a part of a
-/// measurement: found on the tuning half of the benchmark's photos.
+/// measurement. Set roughly on the tuning half of the benchmark's photos; no sweep was made.
 const LINE_SHARE: f64 = 0.02;
 const LINE_SHARE_BESIDE_EDGES: f64 = 0.01;
 const EDGE_SHARE: f64 = 0.05;
