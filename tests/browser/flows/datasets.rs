@@ -24,7 +24,7 @@ pub fn folder(context: &mut Context) -> anyhow::Result<()> {
     let mask = GrayImage::from_fn(640, 480, |x, y| Luma([if x < 100 && y < 100 { 255 } else { 0 }]));
     let mut png = Cursor::new(Vec::new());
     mask.write_to(&mut png, ImageFormat::Png)?;
-    folder.write("test/000002/mask_visib/000764_000000.png", png.get_ref())?;
+    folder.write("test/000002/mask_visib/000762_000000.png", png.get_ref())?;
 
     let page = context.start("empty")?;
     drop_folder(page, &folder.0)?;
@@ -34,7 +34,7 @@ pub fn folder(context: &mut Context) -> anyhow::Result<()> {
     let poses: usize = state.photos.iter().map(|photo| photo.poses.len()).sum();
     ensure!((state.objects.len(), poses) == (8, 122), "{} objects, {poses} poses", state.objects.len());
     let truth: Value = serde_json::from_slice(&std::fs::read(source.join("test/000002/scene_gt.json"))?)?;
-    let first = truth["764"][0]["cam_t_m2c"].as_array().context("No truth")?;
+    let first = truth["762"][0]["cam_t_m2c"].as_array().context("No truth")?;
     let pose = state.photos[0].poses[0].camera_from_object;
     for (row, expected) in pose.iter().zip(first) {
         ensure!(row[3] == expected.as_f64().context("No number")?, "{pose:?} instead of {first:?}");
