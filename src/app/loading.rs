@@ -410,10 +410,11 @@ impl Loading {
 fn accepted(pick: Pick) -> &'static [&'static str] {
     match pick {
         Pick::Anything => &[],
-        Pick::Photos | Pick::Masks | Pick::DepthMap => &["png", "jpg", "jpeg"],
+        Pick::Photos | Pick::Masks => &["png", "jpg", "jpeg", "webp", "bmp", "tif", "tiff"],
+        Pick::DepthMap => &["png", "tif", "tiff"],
         Pick::Meshes => &["ply", "obj", "stl", "glb", "gltf", "off"],
-        Pick::Cameras => &["json", "txt"],
-        Pick::Poses => &["json", "txt", "csv"],
+        Pick::Cameras => &["json", "txt", "npy", "yml", "yaml"],
+        Pick::Poses => &["json", "txt", "csv", "npy"],
         Pick::Workspace => &["zip"],
     }
 }

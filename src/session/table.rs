@@ -87,7 +87,7 @@ commands![
     (OpenScene, "open_scene", File, "Open scene…", "All scenes that are kept in this browser", ctrl_shift("O"), always),
     (SaveScene, "save_scene", File, "Save", "Keep the scene in this browser now; it is also done by itself", ctrl("S"), needs_content),
     (SaveSceneAs, "save_scene_as", File, "Save as…", "Go on with a copy under another name", ctrl_shift("S"), needs_content),
-    (ImportPhotos, "import_photos", File, "Import photos…", "PNG or JPEG", None, always),
+    (ImportPhotos, "import_photos", File, "Import photos…", "PNG, JPEG, WebP, BMP or TIFF", None, always),
     (ImportMeshes, "import_meshes", File, "Import meshes…", "3D models of the objects", None, always),
     (ImportMasks, "import_masks", File, "Import masks…", "Images of the shown photo's size: what is not black is in the mask", None, needs_photo),
     (ImportDepth, "import_depth", File, "Import depth map…", "A grey image of the shown photo's size, mostly of 16 bits: hides what is behind the scene", None, needs_photo),

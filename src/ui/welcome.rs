@@ -7,9 +7,9 @@ use super::{Asked, SceneRequest, Surroundings, theme};
 use crate::session::{Command, CommandId};
 
 const STEPS: [(&str, &str, &str); 3] = [
-    ("1", "A photo", "PNG or JPEG"),
+    ("1", "A photo", "PNG, JPEG, WebP, BMP or TIFF"),
     ("2", "A 3D mesh of the object", "PLY, OBJ, STL, GLB or OFF"),
-    ("3", "The camera", "JSON, or type fx fy cx cy later"),
+    ("3", "The camera", "JSON, YAML, NumPy, or typed later"),
 ];
 
 /// More would be a list; the dialog has that.
@@ -75,11 +75,9 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
     recent_scenes(ui, around, asked);
     ui.add_space(12.0);
     ui.label(
-        RichText::new(
-            "Also: a folder or zip in the BOP, Linemod or MegaPose layout, poses (JSON), a workspace (zip)",
-        )
-        .small()
-        .weak(),
+        RichText::new("Also: a data set (BOP, Linemod, MegaPose) as folder or zip, poses, a workspace")
+            .small()
+            .weak(),
     );
     if let Some(busy) = &around.busy {
         ui.add_space(8.0);

@@ -24,7 +24,7 @@ pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &m
     };
     section(ui, "Photos", true, import, |ui| {
         if photos.is_empty() {
-            super::number_field::note(ui, "Drop a photo (PNG, JPEG)", true);
+            super::number_field::note(ui, "Drop a photo (PNG, JPEG, …)", true);
         }
         list::rows(ui, List::Photos, photos.len(), reveal, |ui, index| {
             photo_row(ui, session, index, &photos[index], state, commands);

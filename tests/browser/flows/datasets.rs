@@ -42,8 +42,7 @@ pub fn folder(context: &mut Context) -> anyhow::Result<()> {
     let raw: Value = page.eval("window.pinpose.state()")?;
     let masks = raw["photos"][0]["masks"].as_array().context("No masks")?;
     ensure!(masks.len() == 1 && masks[0]["object"] == state.photos[0].poses[0].object, "{masks:?}");
-    page.reload()?;
-    page.wait_until_ready()?;
+    let page = context.start("")?;
     page.wait_for_state("!state.busy && state.photos.length === 16", PATIENCE)?;
     Ok(())
 }
