@@ -230,17 +230,25 @@ impl Expert<'_> {
         self.page.wheel(at, notches.round() as i32, modifiers)
     }
 
-    /// Left drag: the grabbed point stays under the cursor.
+    /// Left drag: the grabbed point stays under the cursor. Whoever wants to go where the view does not reach looks at the
+    /// whole photo first.
     fn carry(&mut self) -> anyhow::Result<()> {
         let pose = self.pose()?.camera_from_object;
-        let (here, there) = self.centers(&pose)?;
+        let (mut here, mut there) = self.centers(&pose)?;
+        let [x, y, width, height] = self.page.state()?.viewport.rect;
+        let is_seen = (x..x + width).contains(&there.0) && (y..y + height).contains(&there.1);
+        if !is_seen {
+            self.page.key("0", &[])?;
+            (here, there) = self.centers(&pose)?;
+        }
         let from = self.grip(here)?;
         let to = ((from.0 + there.0 - here.0).round(), (from.1 + there.1 - here.1).round());
         if distance_px(from, to) < 1.0 {
             return Ok(());
         }
         self.gestures += 1;
-        self.page.drag(from, to, Button::Left, DRAG_STEPS, &[])
+        self.page.drag(from, to, Button::Left, DRAG_STEPS, &[])?;
+        if is_seen { Ok(()) } else { self.page.key("f", &[]) }
     }
 
     /// Bursts of keys: one for each axis that is more than half a small step off.
@@ -268,14 +276,16 @@ impl Expert<'_> {
         self.burst(if down > 0.0 { "ArrowDown" } else { "ArrowUp" }, down.abs())
     }
 
-    /// So many steps of a key: whole ones plain, tenths with Alt.
+    /// So many steps of a key: tens with Shift, whole ones plain, tenths with Alt.
     fn burst(&mut self, key: &str, steps: f64) -> anyhow::Result<()> {
         let tenths = (steps * 10.0).round() as u32;
-        if tenths == 0 || tenths > 100 {
+        // Half a turn is 180 steps of a degree.
+        if tenths == 0 || tenths > 1800 {
             return Ok(());
         }
         self.gestures += 1;
-        self.page.keys(key, tenths / 10, &[])?;
+        self.page.keys(key, tenths / 100, &[Modifier::Shift])?;
+        self.page.keys(key, tenths / 10 % 10, &[])?;
         self.page.keys(key, tenths % 10, &[Modifier::Alt])
     }
 

@@ -23,8 +23,12 @@ const DEPTH_MM: f64 = 600.0;
 /// takes its processors from the page.
 const MOST_CPU_MS: f64 = 10.0;
 
-/// A hundredth: counts are exact, but the number of frames in which a step is drawn is not always the same.
+/// A hundredth: an upload less or more at the ends of the drag.
 const SAME: f64 = 1.01;
+
+/// What lies below the meshes is drawn once to be kept, of two parts, and composed of two parts until then. On a slow machine
+/// that falls into the drag.
+const ONCE: f64 = 4.0 / STEPS as f64 + 1e-9;
 
 /// An object's uniforms as they are uploaded.
 const BYTES_PER_OBJECT: f64 = 256.0;
@@ -36,10 +40,13 @@ pub fn drag_ten(context: &mut Context) -> anyhow::Result<()> {
     let ten_small = drag(page, "Ten objects of 10 000 triangles", &[(100, 51); 10])?;
     let ten = drag(page, "Ten objects of 50 000 triangles", &[(200, 126); 10])?;
     ensure!(ten.bytes <= ten_small.bytes * SAME, "Uploads depend on the meshes");
-    ensure!(ten.draws <= ten_small.draws * SAME, "Draw calls depend on the meshes");
+    ensure!(ten.mesh_draws() <= ten_small.mesh_draws() + ONCE, "Draw calls depend on the meshes");
     ensure!(ten.bytes <= one.bytes * SAME + 9.0 * BYTES_PER_OBJECT, "More is uploaded than uniforms");
     // Each object in the two passes of surfaces and silhouettes.
-    ensure!(ten.draws <= one.draws * SAME + 9.0 * 2.0, "An object has more than two draw calls");
+    ensure!(
+        ten.mesh_draws() <= one.mesh_draws() + 9.0 * 2.0 + ONCE,
+        "An object has more than two draw calls"
+    );
     compare(&one, &ten)
 }
 
@@ -49,7 +56,7 @@ pub fn drag_million(context: &mut Context) -> anyhow::Result<()> {
     let small = drag(page, "One object of 10 000 triangles", &[(100, 51)])?;
     let large = drag(page, "One object of 1 000 000 triangles", &[(1000, 501)])?;
     ensure!(large.bytes <= small.bytes * SAME, "Uploads depend on the mesh");
-    ensure!(large.draws <= small.draws * SAME, "Draw calls depend on the mesh");
+    ensure!(large.mesh_draws() <= small.mesh_draws() + ONCE, "Draw calls depend on the mesh");
     compare(&small, &large)
 }
 
