@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crate::formats::{Document, Keep, ViewSettings, write_document};
 use crate::platform::{
-    self, Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, Storage,
+    self, Journal, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, Storage,
 };
 use crate::scene::{Scene, SceneFile, Sha256, file_stem};
 use crate::session::Session;
@@ -58,6 +58,8 @@ struct Keeper {
     held: bool,
     /// Another window writes the scene: a change goes into a copy.
     is_lent: bool,
+    /// The next start does not begin with this scene.
+    is_trial: bool,
     finished: Option<Finished>,
     failure: Option<String>,
 }
@@ -81,6 +83,7 @@ impl Autosave {
             saving: false,
             held: false,
             is_lent: false,
+            is_trial: false,
             finished: None,
             failure: None,
         };
@@ -153,6 +156,7 @@ impl Autosave {
         keeper.failed_revision = None;
         keeper.held = false;
         keeper.is_lent = false;
+        keeper.is_trial = false;
         keeper.finished = None;
         keeper.failure = None;
     }
@@ -160,6 +164,15 @@ impl Autosave {
     /// Another window writes this scene. What is changed here has to go into a copy.
     pub fn lend(&mut self) {
         self.keeper.borrow_mut().is_lent = true;
+    }
+
+    /// The open scene came by `?example`: the next start does not begin with it.
+    pub fn mark_trial(&mut self) {
+        self.keeper.borrow_mut().is_trial = true;
+    }
+
+    pub fn is_trial(&self) -> bool {
+        self.keeper.borrow().is_trial
     }
 
     /// What is in the session is not what is stored: save it with the next tick.
@@ -254,7 +267,9 @@ fn save(keeper: &Rc<RefCell<Keeper>>) {
     let Some(unsaved) = keeper_now.unsaved() else { return };
     let (revision, changed_at_ms) = (unsaved.revision, platform::now_ms());
     let saved = unsaved.saved(changed_at_ms);
-    let save = keeper_now.storage.save(&keeper_now.id, saved, keeper_now.stored_ms);
+    // A tab that closes right after the first save has to come back to this scene.
+    let terms = SaveTerms { last_seen_ms: keeper_now.stored_ms, opens_next: !keeper_now.is_trial };
+    let save = keeper_now.storage.save(&keeper_now.id, saved, terms);
     keeper_now.saving = true;
     drop(keeper_now);
     let keeper = keeper.clone();

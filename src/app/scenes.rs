@@ -24,8 +24,6 @@ pub struct Scenes {
     /// Waits for the open scene to be saved.
     next: Option<Next>,
     arrived: Rc<RefCell<VecDeque<Arrived>>>,
-    /// The open scene came by `?example`: the next visit does not start with it.
-    is_trial: bool,
     /// The user asked to save, and wants to hear that it is done.
     says_saved: bool,
 }
@@ -80,7 +78,6 @@ impl Scenes {
             opening: None,
             next: None,
             arrived: Rc::default(),
-            is_trial: false,
             says_saved: false,
         }
     }
@@ -128,8 +125,7 @@ impl Scenes {
     }
 
     /// The next start opens this one.
-    fn remember(&mut self, id: &SceneId) {
-        self.is_trial = false;
+    fn remember(&self, id: &SceneId) {
         self.when_done(self.storage.set_last_open(id), |()| Arrived::Changed, Arrived::Problem);
     }
 
@@ -155,7 +151,7 @@ impl PinPose {
         match start {
             StartWith::Nothing => {}
             StartWith::Example => {
-                self.scenes.is_trial = true;
+                self.autosave.mark_trial();
                 self.claim_scene();
                 self.loading.fetch_example();
             }
@@ -348,14 +344,12 @@ impl PinPose {
 
     fn begin_new(&mut self) {
         self.fresh_session();
-        self.scenes.is_trial = false;
         self.autosave.begin(platform::new_scene_id(), None, &self.session);
         self.claim_scene();
     }
 
     fn begin_copy(&mut self, name: String) {
         self.apply(Command::RenameScene(name));
-        self.scenes.is_trial = false;
         self.autosave.begin(platform::new_scene_id(), None, &self.session);
         self.autosave.mark_unsaved();
         self.claim_scene();
@@ -434,9 +428,7 @@ impl PinPose {
         match finished {
             Finished::Saved { first } => {
                 self.scenes.refresh();
-                if first && !self.scenes.is_trial {
-                    let id = self.autosave.id();
-                    self.scenes.remember(&id);
+                if first && !self.autosave.is_trial() {
                     let asking = self.scenes.storage.ask_to_persist();
                     self.scenes.when_done(asking, |()| Arrived::Changed, Arrived::Problem);
                 }

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::storage::{
-    Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary, Storage,
-    StorageFuture, StorageUse, distinct, sort_scenes,
+    Journal, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary,
+    Storage, StorageFuture, StorageUse, distinct, sort_scenes,
 };
 
 #[derive(Debug, Default)]
@@ -94,9 +94,9 @@ impl Kept {
         })
     }
 
-    fn save(&mut self, id: &SceneId, saved: &Saved, last_seen_ms: Option<f64>) -> SaveOutcome {
+    fn save(&mut self, id: &SceneId, saved: &Saved, terms: SaveTerms) -> SaveOutcome {
         let stored_ms = self.scenes.get(id).map(|record| record.heading.changed_at_ms);
-        if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
+        if terms.last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != terms.last_seen_ms {
             return SaveOutcome::ChangedElsewhere;
         }
         let named = |asset: &SavedAsset| (asset.key.clone(), asset.file_name.clone());
@@ -110,6 +110,9 @@ impl Kept {
         self.scenes.insert(id.clone(), record);
         self.assets.extend(saved.files().map(|file| (file.key.clone(), file.clone())));
         self.remove_unneeded();
+        if terms.opens_next {
+            self.last_open = Some(id.clone());
+        }
         SaveOutcome::Saved
     }
 
@@ -132,11 +135,11 @@ impl Storage for MemoryStorage {
         ready(self.kept.borrow().load(id))
     }
 
-    fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome> {
+    fn save(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> StorageFuture<SaveOutcome> {
         if let Some(reason) = self.failure.borrow().clone() {
             return Box::pin(async { Err(reason) });
         }
-        ready(self.kept.borrow_mut().save(id, &saved, last_seen_ms))
+        ready(self.kept.borrow_mut().save(id, &saved, terms))
     }
 
     fn claim(&self, id: &SceneId) -> StorageFuture<bool> {

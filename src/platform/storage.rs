@@ -133,6 +133,16 @@ impl Journal {
     }
 }
 
+/// On which terms a scene is saved.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SaveTerms {
+    /// The `changed_at_ms` of what this program last read or wrote there: work that another window has saved since is not
+    /// written over. `None` writes in any case.
+    pub last_seen_ms: Option<f64>,
+    /// The next start opens this scene.
+    pub opens_next: bool,
+}
+
 /// How a save ended, if it did not fail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SaveOutcome {
@@ -159,10 +169,7 @@ pub trait Storage {
     fn load(&self, id: &SceneId) -> StorageFuture<Option<Saved>>;
 
     /// Replaces what is saved; files that are there already are not written again, files that no scene needs go.
-    ///
-    /// `last_seen_ms` is the `changed_at_ms` of what this program last read or wrote there: work that another window has
-    /// saved since is not written over. `None` writes in any case.
-    fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome>;
+    fn save(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> StorageFuture<SaveOutcome>;
 
     /// Makes this program the one that writes a scene, until it claims another one or ends. False: another window has it.
     fn claim(&self, id: &SceneId) -> StorageFuture<bool>;

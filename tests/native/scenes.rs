@@ -6,7 +6,7 @@ use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
 use egui_kittest::kittest::Queryable as _;
-use pinpose::platform::{Journal, MemoryStorage, PageCall, SceneId, SceneSummary, Storage};
+use pinpose::platform::{Journal, MemoryStorage, PageCall, SaveTerms, SceneId, SceneSummary, Storage};
 
 use crate::program::Program;
 use crate::support::{box_mesh, flat_photo};
@@ -214,7 +214,7 @@ fn a_scene_that_cannot_be_read_is_left_as_it_is() {
     let scene = stored(&storage).remove(0);
     let mut saved = pollster::block_on(storage.load(&scene.id)).unwrap().unwrap();
     saved.json = saved.json.replace("\"version\": ", "\"version\": 9");
-    pollster::block_on(storage.save(&scene.id, saved.clone(), None)).unwrap();
+    pollster::block_on(storage.save(&scene.id, saved.clone(), SaveTerms::default())).unwrap();
     let mut program = Program::start(&storage);
     let state = program.state();
     assert!(state.notices.iter().any(|notice| notice.contains("cannot be opened")), "{:?}", state.notices);

@@ -5,8 +5,9 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use pinpose::platform::{
-    FolderStorage, Journal, MemoryStorage, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading,
-    SceneId, Storage, StorageFuture, keep_preferences_in_memory, read_preference, write_preference,
+    FolderStorage, Journal, MemoryStorage, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion,
+    SceneHeading, SceneId, Storage, StorageFuture, keep_preferences_in_memory, read_preference,
+    write_preference,
 };
 
 fn now<T>(future: StorageFuture<T>) -> T {
@@ -73,8 +74,8 @@ fn scenes_come_back_as_they_were_saved() {
         assert_eq!(now(storage.last_open()), None);
         let bench = saved("Lab bench", 1000.5, &[asset("aa", b"photo"), asset("bb", b"mesh")]);
         let table = saved("", 2000.0, &[asset("aa", b"photo")]);
-        assert_eq!(now(storage.save(&id("a"), bench.clone(), None)), SaveOutcome::Saved);
-        assert_eq!(now(storage.save(&id("b"), table.clone(), None)), SaveOutcome::Saved);
+        assert_eq!(now(storage.save(&id("a"), bench.clone(), SaveTerms::default())), SaveOutcome::Saved);
+        assert_eq!(now(storage.save(&id("b"), table.clone(), SaveTerms::default())), SaveOutcome::Saved);
         assert_eq!(now(storage.load(&id("a"))), Some(bench.clone()));
         assert_eq!(now(storage.load(&id("b"))), Some(table));
         // The newest first; a scene without a name is called by what is in it.
@@ -89,7 +90,7 @@ fn scenes_come_back_as_they_were_saved() {
 fn scenes_are_renamed_copied_and_deleted() {
     on_both("rename", |storage| {
         let bench = saved("Lab bench", 1000.0, &[asset("aa", b"photo")]);
-        now(storage.save(&id("a"), bench.clone(), None));
+        now(storage.save(&id("a"), bench.clone(), SaveTerms::default()));
         now(storage.rename(&id("a"), "Lab\nbench 2"));
         now(storage.duplicate(&id("a"), &id("b"), "Copy"));
         assert_eq!(now(storage.load(&id("b"))).unwrap().assets, bench.assets);
@@ -114,8 +115,8 @@ fn assets_are_stored_once_and_go_with_the_last_scene_that_needs_them() {
     let memory = Rc::new(MemoryStorage::default());
     let expect = |expected: usize| assert_eq!((count(), memory.asset_count()), (expected, expected));
     let save = |text: &str, saved: Saved, expected: usize| {
-        now(storage.save(&id(text), saved.clone(), None));
-        now(memory.save(&id(text), saved, None));
+        now(storage.save(&id(text), saved.clone(), SaveTerms::default()));
+        now(memory.save(&id(text), saved, SaveTerms::default()));
         expect(expected);
     };
     let delete = |text: &str, expected: usize| {
@@ -148,7 +149,7 @@ fn textures_come_back_with_their_meshes() {
         let companions = vec![texture("aa", b"oak"), texture("bb", b"beech"), texture("cc", b"oak")];
         let assets = ["aa", "bb", "cc"].map(|key| asset(key, key.as_bytes()));
         let mut chairs = Saved { companions, ..saved("Chairs", 1.0, &assets) };
-        now(storage.save(&id("a"), chairs.clone(), None));
+        now(storage.save(&id("a"), chairs.clone(), SaveTerms::default()));
         now(storage.duplicate(&id("a"), &id("b"), "Chairs"));
         assert_eq!(now(storage.load(&id("b"))), Some(chairs.clone()));
         assert_eq!(now(storage.list())[0].bytes, chairs.bytes());
@@ -156,22 +157,35 @@ fn textures_come_back_with_their_meshes() {
         assert_eq!(now(storage.load(&id("b"))), Some(chairs.clone()));
         let all = now(storage.usage()).used_bytes;
         chairs.companions.clear();
-        now(storage.save(&id("b"), chairs, None));
+        now(storage.save(&id("b"), chairs, SaveTerms::default()));
         assert!(now(storage.usage()).used_bytes <= all - 8, "the textures are still there");
+    });
+}
+
+/// What this window saw last, before the other one saved.
+const SEEN: SaveTerms = SaveTerms { last_seen_ms: Some(1000.0), opens_next: false };
+
+#[test]
+fn the_save_itself_says_what_opens_next() {
+    on_both("next", |storage| {
+        let terms = SaveTerms { opens_next: true, ..SaveTerms::default() };
+        now(storage.save(&id("a"), saved("work", 1.0, &[]), terms));
+        now(storage.save(&id("b"), saved("example", 2.0, &[]), SaveTerms::default()));
+        assert_eq!(now(storage.last_open()), Some(id("a")));
     });
 }
 
 #[test]
 fn what_another_window_has_saved_is_not_written_over() {
     on_both("other", |storage| {
-        now(storage.save(&id("a"), saved("mine", 1000.0, &[]), None));
-        now(storage.save(&id("a"), saved("theirs", 1500.0, &[]), Some(1000.0)));
-        let outcome = now(storage.save(&id("a"), saved("mine", 2000.0, &[]), Some(1000.0)));
+        now(storage.save(&id("a"), saved("mine", 1000.0, &[]), SaveTerms::default()));
+        now(storage.save(&id("a"), saved("theirs", 1500.0, &[]), SEEN));
+        let outcome = now(storage.save(&id("a"), saved("mine", 2000.0, &[]), SEEN));
         assert_eq!(outcome, SaveOutcome::ChangedElsewhere);
         assert_eq!(titles(storage), ["theirs"]);
         // A scene that was deleted there is work here.
         now(storage.delete(&id("a")));
-        let outcome = now(storage.save(&id("a"), saved("mine", 2000.0, &[]), Some(1000.0)));
+        let outcome = now(storage.save(&id("a"), saved("mine", 2000.0, &[]), SEEN));
         assert_eq!(outcome, SaveOutcome::Saved);
     });
 }
@@ -194,7 +208,7 @@ fn one_program_writes_a_scene() {
 fn a_journal_is_kept_by_scene_and_goes_with_it() {
     on_both("journal", |storage| {
         let journal = Journal { changed_at_ms: 1_700_000_000_000.125, json: "{\n}".to_owned() };
-        now(storage.save(&id("a"), saved("A", 1.0, &[]), None));
+        now(storage.save(&id("a"), saved("A", 1.0, &[]), SaveTerms::default()));
         storage.write_journal(&id("a"), &journal);
         assert_eq!(storage.read_journal(&id("a")), Some(journal));
         assert_eq!(storage.read_journal(&id("b")), None);
@@ -207,7 +221,7 @@ fn a_journal_is_kept_by_scene_and_goes_with_it() {
 fn a_damaged_file_is_told_in_words_and_a_foreign_name_stays_in_the_folder() {
     let folder = Folder::new("damaged");
     let storage = FolderStorage::new(folder.0.join("store"));
-    now(storage.save(&id("../escaped"), saved("A", 1.0, &[]), None));
+    now(storage.save(&id("../escaped"), saved("A", 1.0, &[]), SaveTerms::default()));
     assert!(folder.0.join("store/scenes").read_dir().unwrap().count() == 1);
     assert!(!folder.0.join("escaped.scene").exists());
     std::fs::write(folder.0.join("store/scenes/b.scene"), "photos many\n\n{}").unwrap();

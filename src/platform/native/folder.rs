@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::platform::storage::{
-    Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneId, SceneSummary, Storage, StorageFuture,
-    StorageUse, distinct, sort_scenes,
+    Journal, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneId, SceneSummary, Storage,
+    StorageFuture, StorageUse, distinct, sort_scenes,
 };
 use record::{AssetLine, Record};
 
@@ -106,9 +106,9 @@ impl FolderStorage {
         }))
     }
 
-    fn save_now(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> io::Result<SaveOutcome> {
+    fn save_now(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> io::Result<SaveOutcome> {
         let stored_ms = self.record(id)?.map(|record| record.heading.changed_at_ms);
-        if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
+        if terms.last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != terms.last_seen_ms {
             return Ok(SaveOutcome::ChangedElsewhere);
         }
         for file in saved.files() {
@@ -126,7 +126,14 @@ impl FolderStorage {
         let assets = distinct(&saved.assets).map(line).collect();
         self.write_record(id, &Record { heading: saved.heading, assets, companions, json: saved.json })?;
         self.remove_unneeded()?;
+        if terms.opens_next {
+            self.set_last_open_now(id)?;
+        }
         Ok(SaveOutcome::Saved)
+    }
+
+    fn set_last_open_now(&self, id: &SceneId) -> io::Result<()> {
+        write_whole(&self.folder.join("last_open"), id.as_str().as_bytes())
     }
 
     fn write_record(&self, id: &SceneId, record: &Record) -> io::Result<()> {
@@ -178,8 +185,8 @@ impl Storage for FolderStorage {
         done(self.load_now(id), "the saved scene cannot be read")
     }
 
-    fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome> {
-        done(self.save_now(id, saved, last_seen_ms), "the scene cannot be saved")
+    fn save(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> StorageFuture<SaveOutcome> {
+        done(self.save_now(id, saved, terms), "the scene cannot be saved")
     }
 
     fn claim(&self, id: &SceneId) -> StorageFuture<bool> {
@@ -205,8 +212,7 @@ impl Storage for FolderStorage {
     }
 
     fn set_last_open(&self, id: &SceneId) -> StorageFuture<()> {
-        let written = write_whole(&self.folder.join("last_open"), id.as_str().as_bytes());
-        done(written, "which scene was open cannot be saved")
+        done(self.set_last_open_now(id), "which scene was open cannot be saved")
     }
 
     fn usage(&self) -> StorageFuture<StorageUse> {

@@ -23,8 +23,8 @@ use wasm_bindgen::prelude::*;
 
 use super::{browser_storage, describe};
 use crate::platform::storage::{
-    Journal, SaveOutcome, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary, Storage,
-    StorageFuture, StorageUse, distinct, sort_scenes,
+    Journal, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary,
+    Storage, StorageFuture, StorageUse, distinct, sort_scenes,
 };
 
 const SCENES: &str = "scenes";
@@ -102,10 +102,13 @@ impl Storage for IndexedDb {
         self.read("the saved scene cannot be read", async move |transaction| load(transaction, &id).await)
     }
 
-    fn save(&self, id: &SceneId, saved: Saved, last_seen_ms: Option<f64>) -> StorageFuture<SaveOutcome> {
+    fn save(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> StorageFuture<SaveOutcome> {
+        if terms.opens_next {
+            browser_storage::write_of_tab(LAST_OPEN, id.as_str());
+        }
         let id = id.clone();
         self.write("the scene cannot be saved", async move |transaction| {
-            save(transaction, &id, saved, last_seen_ms).await
+            save(transaction, &id, saved, terms).await
         })
     }
 
@@ -166,9 +169,7 @@ impl Storage for IndexedDb {
         browser_storage::write_of_tab(LAST_OPEN, id.as_str());
         let id = id.clone();
         self.write("which scene was open cannot be saved", async move |transaction| {
-            let state = transaction.object_store(STATE)?;
-            state.put(&id.as_str().into(), Some(&LAST_OPEN.into()))?.await?;
-            Ok(())
+            set_last_open(transaction, &id).await
         })
     }
 
@@ -278,11 +279,11 @@ async fn save(
     transaction: &Transaction,
     id: &SceneId,
     saved: Saved,
-    last_seen_ms: Option<f64>,
+    terms: SaveTerms,
 ) -> Result<SaveOutcome, idb::Error> {
     let scenes = transaction.object_store(SCENES)?;
     let stored_ms = scenes.get(key(id))?.await?.map(|scene| records::heading(&scene).changed_at_ms);
-    if last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != last_seen_ms {
+    if terms.last_seen_ms.is_some() && stored_ms.is_some() && stored_ms != terms.last_seen_ms {
         return Ok(SaveOutcome::ChangedElsewhere);
     }
     let assets = transaction.object_store(ASSETS)?;
@@ -297,7 +298,16 @@ async fn save(
     let scene = records::scene(&saved.heading, saved.bytes(), &needed);
     scenes.put(&scene, Some(&id.as_str().into()))?.await?;
     remove_unneeded(transaction).await?;
+    if terms.opens_next {
+        set_last_open(transaction, id).await?;
+    }
     Ok(SaveOutcome::Saved)
+}
+
+async fn set_last_open(transaction: &Transaction, id: &SceneId) -> Result<(), idb::Error> {
+    let state = transaction.object_store(STATE)?;
+    state.put(&id.as_str().into(), Some(&LAST_OPEN.into()))?.await?;
+    Ok(())
 }
 
 async fn copy_heading(

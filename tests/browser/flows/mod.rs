@@ -16,7 +16,7 @@ mod workspace;
 
 use anyhow::Context as _;
 
-use crate::api::State;
+use crate::api::{PATIENCE, State};
 use crate::cdp::Backend;
 use crate::context::Context;
 use crate::data::{Linemod, Sample};
@@ -113,4 +113,10 @@ fn start_with_sample<'a>(
     let state = page.wait_until_saved()?;
     state.selected_pose().context("The sample was not loaded")?;
     Ok((page, state))
+}
+
+/// Waits until no message lies over the page: they go by themselves.
+fn without_messages(page: &mut Page) -> anyhow::Result<()> {
+    page.wait_for_state("state.notices.length === 0", PATIENCE)?;
+    page.next_frame()
 }

@@ -2,7 +2,7 @@
 
 use anyhow::ensure;
 
-use super::{PHOTO, start_with_sample};
+use super::{PHOTO, start_with_sample, without_messages};
 use crate::api::{PATIENCE, State};
 use crate::context::Context;
 use crate::data::Linemod;
@@ -99,6 +99,8 @@ fn overlay_looks(page: &mut Page) -> anyhow::Result<()> {
     let on_object = page.mouse_place(ON_OBJECT)?;
     page.click(on_object, Button::Left, &[])?;
     page.key("f", &[])?;
+    // Messages lie over the viewport, and go by themselves.
+    without_messages(page)?;
     let plain = object_on_screen(page)?;
     page.set_overlay_opacity(0.2)?;
     let faint = object_on_screen(page)?;

@@ -32,6 +32,7 @@ use anyhow::{Context as _, ensure};
 use image::RgbaImage;
 use serde_json::{Value, json};
 
+use super::without_messages;
 use crate::api::{Matrix, PATIENCE, Widget};
 use crate::context::Context;
 use crate::data::{ball_ply, camera_file, disc_obj, flat_photo};
@@ -142,11 +143,10 @@ fn at_rest(page: &mut Page, rect: [f64; 4]) -> anyhow::Result<RgbaImage> {
     }
 }
 
-/// No mouse in the view, and no messages over it: they go by themselves.
+/// No mouse in the view, and no messages over it.
 fn clear_view(page: &mut Page) -> anyhow::Result<()> {
     page.mouse_move(OUT_OF_THE_WAY)?;
-    page.wait_for_state("state.notices.length === 0", PATIENCE)?;
-    Ok(())
+    without_messages(page)
 }
 
 fn area(page: &mut Page, rect: [f64; 4]) -> anyhow::Result<RgbaImage> {
