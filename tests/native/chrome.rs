@@ -303,12 +303,13 @@ fn panels_and_dialogs_look_as_they_did() {
         return;
     }
     type Prepare = fn(&mut Chrome);
-    let states: [(&str, ThemeChoice, Prepare); 8] = [
+    let states: [(&str, ThemeChoice, Prepare); 9] = [
         ("scene", ThemeChoice::Dark, |_| {}),
         ("scene-light", ThemeChoice::Light, |_| {}),
         ("palette", ThemeChoice::Dark, |chrome| chrome.state.open = Some(ui::Dialog::Palette)),
         ("shortcuts", ThemeChoice::Light, |chrome| chrome.state.open = Some(ui::Dialog::Shortcuts)),
         ("paste", ThemeChoice::Dark, |chrome| chrome.state.open = Some(ui::Dialog::PastePose)),
+        ("export", ThemeChoice::Light, |chrome| chrome.state.open = Some(ui::Dialog::Export)),
         ("welcome", ThemeChoice::Light, |chrome| chrome.session = Session::default()),
         ("scenes", ThemeChoice::Dark, |chrome| chrome.state.scenes_dialog.show()),
         ("question", ThemeChoice::Dark, |chrome| {
