@@ -14,7 +14,7 @@ use crate::math::Pose;
 use crate::platform::{self, FileBytes, PageAnswer, PageCall, PageReply, PageState, PageValue, Perf, Picked};
 use crate::render::ExportKind;
 use crate::scene::{Look, ObjectId, OverlayMode, PhotoId, PoseSource};
-use crate::session::{Arrangement, COMMANDS, Command, Panes, Question, Tool};
+use crate::session::{Arrangement, COMMANDS, Command, Panes, Question};
 use crate::ui::{self, Saving};
 
 type Answer = Result<PageAnswer, String>;
@@ -176,7 +176,7 @@ impl PinPose {
             document_json: write_document(&self.session.document(Keep::Everything)),
             photo: self.session.photo().map(|photo| photo.id.0),
             selected: self.session.selected().map(|id| id.0),
-            tool: if self.session.tool() == Tool::Move { "move" } else { "rotate" },
+            tool: self.session.tool().name(),
             zoom: self.hands.photo_view.zoom,
             center: self.hands.photo_view.center.to_array(),
             viewport: rect_of(self.ui_state.viewport),

@@ -360,6 +360,7 @@ impl Loading {
             Parsed::Mesh(mesh) => load.batch.meshes.push(mesh),
             Parsed::Camera(camera) => load.batch.cameras.push(camera),
             Parsed::Poses(poses) => load.batch.poses.push(poses),
+            Parsed::Pins(pins) => load.batch.pins = Some(pins),
             Parsed::Workspace(workspace) => {
                 load.opening = Some((workspace.document, Origin::Workspace));
                 for FileWithCompanions { file, companions } in workspace.files {

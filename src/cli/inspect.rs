@@ -99,6 +99,7 @@ fn describe(file: &NamedFile, parsed: &Parsed, warnings: &[String]) -> Value {
                 "remarks": poses.remarks,
             }),
         ),
+        Parsed::Pins(pins) => ("pins", json!({ "pins": pins.len() })),
         Parsed::Workspace(workspace) => (
             "workspace",
             json!({

@@ -117,6 +117,11 @@ impl Opened {
             }
             Ok((Parsed::Camera(camera), _)) => self.batch.cameras.push(camera),
             Ok((Parsed::Poses(poses), _)) => self.batch.poses.push(poses),
+            Ok((Parsed::Pins(_), _)) => {
+                let name = &file.name;
+                self.problems
+                    .push(format!("{name}: pins of one photo: solve them with `pinpose pins {name}`"));
+            }
             Ok((Parsed::Workspace(workspace), _)) => {
                 self.document = Some(workspace.document);
                 for FileWithCompanions { file, companions } in workspace.files {

@@ -4,13 +4,12 @@
 //! optional `weight` and `enabled` each, and if wanted `start` (a row-major 4×4), `click_sigma_px`, `object_diameter_mm` and
 //! `estimate_focal`. Millimetres of the object's frame, pixels with (0, 0) at the centre of the top-left one.
 
-use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
 use super::{Failure, Outcome, open};
-use crate::formats::{FormatError, NamedFile, read_camera};
+use crate::formats::{FormatError, NamedFile, positive_number, read_camera, read_pins};
 use crate::math::{Intrinsics, Pose};
-use crate::solve::pins::{Pin, PinOptions, PinSolution, solve_focal, solve_pins};
+use crate::solve::pins::{PinOptions, PinSolution, solve_focal, solve_pins};
 
 pub fn run(mut parser: lexopt::Parser) -> Outcome {
     let mut paths = Vec::new();
@@ -82,54 +81,13 @@ fn describe(camera: &Intrinsics, solution: &PinSolution) -> Value {
     })
 }
 
-fn read_pins(value: &Value) -> Result<Vec<Pin>, FormatError> {
-    let list = value.get("pins").and_then(Value::as_array).ok_or_else(|| {
-        FormatError::at("\"pins\"", "a list of {\"point\": [x, y, z], \"pixel\": [u, v]} expected")
-    })?;
-    list.iter().enumerate().map(|(index, pin)| read_pin(&format!("\"pins\"[{index}]"), pin)).collect()
-}
-
-fn read_pin(place: &str, pin: &Value) -> Result<Pin, FormatError> {
-    let numbers = |key: &str, count: usize| {
-        let found: Option<Vec<f64>> =
-            pin.get(key).and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
-        found
-            .filter(|found| found.len() == count)
-            .ok_or_else(|| FormatError::at(format!("{place}.\"{key}\""), format!("{count} numbers expected")))
-    };
-    let (point, pixel) = (numbers("point", 3)?, numbers("pixel", 2)?);
-    let enabled = match pin.get("enabled") {
-        None => true,
-        Some(Value::Bool(enabled)) => *enabled,
-        Some(_) => return Err(FormatError::at(format!("{place}.\"enabled\""), "true or false expected")),
-    };
-    Ok(Pin {
-        point_mm: DVec3::new(point[0], point[1], point[2]),
-        pixel: DVec2::new(pixel[0], pixel[1]),
-        weight: positive(pin, "weight", place)?.unwrap_or(1.0),
-        enabled,
-    })
-}
-
 fn read_options(value: &Value) -> Result<PinOptions, FormatError> {
     let default = PinOptions::default();
     Ok(PinOptions {
-        click_sigma_px: positive(value, "click_sigma_px", "the file")?.unwrap_or(default.click_sigma_px),
-        object_diameter_mm: positive(value, "object_diameter_mm", "the file")?,
+        click_sigma_px: positive_number(value, "click_sigma_px", "the file")?
+            .unwrap_or(default.click_sigma_px),
+        object_diameter_mm: positive_number(value, "object_diameter_mm", "the file")?,
     })
-}
-
-fn positive(value: &Value, key: &str, place: &str) -> Result<Option<f64>, FormatError> {
-    let read = |found: &Value| {
-        let number = found.as_f64().filter(|number| *number > 0.0 && number.is_finite());
-        number.ok_or_else(|| {
-            FormatError::at(
-                format!("{place}, \"{key}\""),
-                format!("a positive number expected, found {found}"),
-            )
-        })
-    };
-    value.get(key).map(read).transpose()
 }
 
 fn read_start(value: &Value) -> Result<Pose, FormatError> {

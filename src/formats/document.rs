@@ -136,6 +136,27 @@ struct PoseEntry {
     camera_changed: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     score: Option<f64>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pins: Vec<PinEntry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PinEntry {
+    point: [f64; 3],
+    pixel: [f64; 2],
+    #[serde(default = "unit_weight", skip_serializing_if = "is_unit_weight")]
+    weight: f64,
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    enabled: bool,
+}
+
+fn unit_weight() -> f64 {
+    1.0
+}
+
+fn is_unit_weight(value: &f64) -> bool {
+    *value == 1.0
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -118,6 +118,7 @@ impl Gather {
             source: PoseSource::Imported,
             changed_at_ms: None,
             score: found.score.filter(|score| score.is_finite()),
+            pins: Vec::new(),
         };
         self.incoming.photos.get_mut(found.photo)?.poses.push(pose);
         Some(object)

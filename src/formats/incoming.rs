@@ -4,7 +4,7 @@ use glam::DMat4;
 
 use super::{CameraFile, Document, FileKey, FormatError};
 use crate::math::{Intrinsics, Pose};
-use crate::scene::{AnnotationState, CameraOrigin, PoseSource, Rgb, Symmetries};
+use crate::scene::{AnnotationState, CameraOrigin, Pin, PoseSource, Rgb, Symmetries};
 
 /// What an import's poses are to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,6 +87,7 @@ pub struct IncomingPose {
     pub changed_at_ms: Option<f64>,
     /// How sure whoever estimated it was.
     pub score: Option<f64>,
+    pub pins: Vec<Pin>,
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::{
-    FormatError, Incoming, NamedFile, Parsed, bop, camera, megapose, own_poses, pose_array, read_document,
-    sixdpat, vision6d,
+    FormatError, Incoming, NamedFile, Parsed, bop, camera, megapose, own_poses, pins, pose_array,
+    read_document, sixdpat, vision6d,
 };
 
 /// Poses of a thousand photos with twenty objects each take a third of it. A value takes up to sixteen times its text in
@@ -20,6 +20,9 @@ pub(super) fn parse_json(file: &NamedFile) -> Result<Parsed, FormatError> {
     let value: Value = serde_json::from_slice(bytes).map_err(FormatError::json)?;
     if value.is_array() {
         return parse_list(name, bytes, &value);
+    }
+    if pins::looks_like_pins(&value) {
+        return pins::read_pins(&value).map(Parsed::Pins);
     }
     if value.get("format").is_some_and(|format| format == own_poses::FORMAT) {
         return own_poses::read_poses_json(name, bytes).map(Parsed::Poses);

@@ -93,6 +93,7 @@ impl Incoming {
                     changed_at_ms: pose.changed_at_ms.unwrap_or(now_ms),
                     camera_changed: false,
                     score: pose.score,
+                    pins: pose.pins.clone(),
                 };
                 scene.annotations.insert((photo, object), annotation);
                 outcome.applied += 1;

@@ -19,6 +19,7 @@ mod matching;
 mod megapose;
 mod npy;
 mod own_poses;
+mod pins;
 mod pose_array;
 mod pose_text;
 mod sixdpat;
@@ -28,7 +29,7 @@ mod yaml;
 
 use std::sync::Arc;
 
-use crate::scene::{MeshAsset, PhotoAsset, file_stem};
+use crate::scene::{MeshAsset, PhotoAsset, Pin, file_stem};
 
 pub use archive::Archive;
 pub use camera::{CameraFile, read_camera};
@@ -39,6 +40,7 @@ pub use file_key::FileKey;
 pub use incoming::{Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose, PosesAs};
 pub use kind::{FileKind, classify};
 pub use matching::Outcome;
+pub use pins::{positive_number, read_pins, write_pins};
 pub use pose_text::{PoseText, read_pose_text, write_pose_text};
 pub use workspace::{Workspace, read_workspace, write_workspace};
 
@@ -56,6 +58,8 @@ pub enum Parsed {
     Mesh(Arc<MeshAsset>),
     Camera(CameraFile),
     Poses(Incoming),
+    /// Pins for the selected object in the photo that is shown.
+    Pins(Vec<Pin>),
     Workspace(Workspace),
 }
 

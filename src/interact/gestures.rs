@@ -4,10 +4,11 @@ use glam::DVec2;
 
 use super::gizmo::{Gizmo, GizmoDrag, Handle};
 use super::object_drag::{FINE, ObjectDrag, depth_by_wheel, hit_to_move};
+use super::pin_drag::{PinDrag, half_pin};
 use super::viewpoint::{GroundDrag, Viewpoint};
-use super::{Button, PointerAction, PointerEvent, pick_along};
+use super::{Button, Eye, PointerAction, PointerEvent, pick_along};
 use crate::scene::{Look, ObjectId};
-use crate::session::{Command, Session};
+use crate::session::{Command, Session, Tool};
 
 /// A press that moves less than this is a click.
 const CLICK_RADIUS_PX: f64 = 4.0;
@@ -42,6 +43,7 @@ enum Action {
     Ground(GroundDrag),
     Object(ObjectDrag),
     Handle(Box<GizmoDrag>),
+    Pin(PinDrag),
     Wipe,
     /// Put back by Esc: the button is still down, and does nothing until it is released.
     Ended,
@@ -102,7 +104,7 @@ impl Gestures {
     pub fn is_dragging_object(&self) -> bool {
         let drags = |press: &Press| match &press.action {
             Action::Object(drag) => drag.movable && !press.is_click,
-            Action::Handle(_) => !press.is_click,
+            Action::Handle(_) | Action::Pin(_) => !press.is_click,
             _ => false,
         };
         self.press.as_ref().is_some_and(drags)
@@ -110,6 +112,14 @@ impl Gestures {
 
     pub fn is_dragging_wipe(&self) -> bool {
         self.press.as_ref().is_some_and(|press| matches!(press.action, Action::Wipe))
+    }
+
+    /// The pin that is on its way.
+    pub fn pin_drag(&self) -> Option<&PinDrag> {
+        match self.press.as_ref().filter(|press| !press.is_click).map(|press| &press.action) {
+            Some(Action::Pin(drag)) => Some(drag),
+            _ => None,
+        }
     }
 
     /// The handle that is held.
@@ -168,10 +178,26 @@ impl Gestures {
                 return Action::Wipe;
             }
         }
+        if button == Button::Left && session.tool() == Tool::Pin {
+            return self.action_of_pin_tool(event.position, session, view, &eye);
+        }
         match ObjectDrag::start(session, &eye, event.position, button) {
             Some(drag) => Action::Object(drag),
             None => Action::Ground(view.ground_drag()),
         }
+    }
+
+    /// In the photo view pins are set and dragged, unless a pin waits for its other half; the scene view is a turntable.
+    fn action_of_pin_tool(
+        &self,
+        position: DVec2,
+        session: &Session,
+        view: &impl Viewpoint,
+        eye: &Eye,
+    ) -> Action {
+        let sets_pins = view.is_photo() && session.half_pin().is_none();
+        let drag = sets_pins.then(|| PinDrag::start(session, eye, position, self.pixels_per_point));
+        drag.flatten().map_or(Action::Ground(view.ground_drag()), Action::Pin)
     }
 
     fn drag_to(
@@ -181,7 +207,7 @@ impl Gestures {
         view: &mut impl Viewpoint,
     ) -> Vec<Command> {
         let Some(press) = &mut self.press else { return Vec::new() };
-        if press.is_click && event.position.distance(press.start) < CLICK_RADIUS_PX {
+        if press.is_click && event.position.distance(press.start) < press.click_radius_px() {
             return Vec::new();
         }
         // The way within the click's radius is not lost: `last` is where the button went down.
@@ -205,6 +231,10 @@ impl Gestures {
             Action::Handle(drag) => {
                 let eye = view.eye(session);
                 commands.extend(eye.and_then(|eye| drag.advance(way_px, event.modifiers.alt, session, &eye)));
+            }
+            Action::Pin(drag) => {
+                let eye = view.eye(session);
+                commands.extend(eye.map(|eye| drag.advance(way_px, event.modifiers, &eye)));
             }
         }
         commands
@@ -246,11 +276,18 @@ impl Gestures {
         view: &impl Viewpoint,
     ) -> Vec<Command> {
         match &press.action {
+            Action::Pin(drag) if press.is_click => drag.click(session),
+            Action::Ground(_) if press.is_click && press.is_of_pin_tool(session) => {
+                let eye = view.eye(session);
+                eye.map_or_else(Vec::new, |eye| half_pin(session, &eye, press.start, view.is_photo()))
+            }
             Action::Ground(_) | Action::Object(_) if press.is_click => {
                 let selects = press.button == Button::Left;
                 if selects { self.click(press.start, event, session, view) } else { Vec::new() }
             }
-            Action::Object(ObjectDrag { movable: true, .. }) | Action::Handle(_) if !press.is_click => {
+            Action::Object(ObjectDrag { movable: true, .. }) | Action::Handle(_) | Action::Pin(_)
+                if !press.is_click =>
+            {
                 vec![Command::EndGesture]
             }
             _ => Vec::new(),
@@ -298,6 +335,10 @@ impl Gestures {
         session: &Session,
         view: &mut impl Viewpoint,
     ) -> Vec<Command> {
+        // The second of two quick clicks for two pins.
+        if session.tool() == Tool::Pin {
+            return Vec::new();
+        }
         let hit = view.eye(session).and_then(|eye| hit_to_move(session, &eye, position));
         view.show(session, hit.map(|hit| hit.object));
         let known = |object: &ObjectId| session.scene().object(*object).is_some();
@@ -310,6 +351,18 @@ impl Gestures {
 }
 
 impl Press {
+    /// A click on a pin that is there does nothing, so the least move is a drag: the last pixel counts.
+    fn click_radius_px(&self) -> f64 {
+        match &self.action {
+            Action::Pin(drag) if !drag.is_new() => f64::MIN_POSITIVE,
+            _ => CLICK_RADIUS_PX,
+        }
+    }
+
+    fn is_of_pin_tool(&self, session: &Session) -> bool {
+        self.button == Button::Left && session.tool() == Tool::Pin
+    }
+
     /// A press that moves stops being a click: its gesture begins.
     fn begin_drag(&mut self, session: &Session) -> Vec<Command> {
         if !std::mem::take(&mut self.is_click) {
@@ -317,6 +370,7 @@ impl Press {
         }
         match &self.action {
             Action::Object(drag) => drag.begin(session),
+            Action::Pin(drag) => drag.begin(session),
             Action::Handle(drag) => vec![Command::BeginGesture(drag.handle.label())],
             _ => Vec::new(),
         }

@@ -3,9 +3,10 @@
 use glam::DVec2;
 
 use super::gizmo::{GizmoDrag, Handle};
+use super::pin_drag::pin_at;
 use super::viewpoint::{GroundDrag, Viewpoint};
 use super::{Gestures, Hit, PhotoView, PointerEvent, SceneView, StandardView, pick_along};
-use crate::session::{Command, Session};
+use crate::session::{Command, Session, Tool};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pane {
@@ -98,6 +99,19 @@ impl Hands {
     /// The handle that is held in a view.
     pub fn handle_drag(&self, pane: Pane) -> Option<&GizmoDrag> {
         self.gestures(pane).handle_drag()
+    }
+
+    /// The pin that is on its way: its number and its pixel.
+    pub fn dragged_pin(&self) -> Option<(usize, DVec2)> {
+        self.photo.pin_drag().map(|drag| (drag.number(), drag.pixel()))
+    }
+
+    /// The number of the pin under the pointer, while nothing is held.
+    pub fn hovered_pin(&self, session: &Session) -> Option<usize> {
+        let (_, position) =
+            self.pointer.filter(|(over, _)| *over == Pane::Photo && self.held_in().is_none())?;
+        let eye = self.photo_view.eye(session).filter(|_| session.tool() == Tool::Pin)?;
+        pin_at(session, &eye, position, self.photo.pixels_per_point).map(|(_, number, _)| number)
     }
 
     /// The handle under the pointer, while nothing is held.

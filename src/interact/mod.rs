@@ -11,6 +11,7 @@ mod hands;
 mod object_drag;
 mod photo_view;
 mod pick;
+mod pin_drag;
 mod pointer;
 mod scene_content;
 mod scene_view;

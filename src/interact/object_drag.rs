@@ -81,7 +81,7 @@ impl ObjectDrag {
     fn turn(&self, session: &Session, eye: &Eye, before: DVec2, roll: bool) -> Option<Pose> {
         let object = session.scene().object(self.object)?;
         let sphere = object.mesh.mesh.sphere();
-        let pivot = self.grab.start.transform_point(sphere.center);
+        let pivot = self.grab.start.transform_point(session.pivot_mm(self.photo, self.object)?);
         if roll {
             let center = eye.image_from_viewport(eye.project(pivot)?);
             let (from, to) = (before - center, self.cursor - center);
@@ -139,6 +139,6 @@ fn depth_target(session: &Session, eye: &Eye, position: DVec2) -> Option<(PhotoI
         return Some((photo, hit.object, hit.point_camera_mm));
     }
     let (_, object, annotation) = session.selected_annotation()?;
-    let center = session.scene().object(object)?.mesh.mesh.sphere().center;
-    Some((photo, object, annotation.camera_from_object.transform_point(center)))
+    let pivot = session.pivot_mm(photo, object)?;
+    Some((photo, object, annotation.camera_from_object.transform_point(pivot)))
 }

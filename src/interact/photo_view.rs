@@ -118,6 +118,10 @@ impl Viewpoint for PhotoView {
         Some(Eye { camera, eye_from_camera: Pose::IDENTITY, zoom: self.zoom, origin_px })
     }
 
+    fn is_photo(&self) -> bool {
+        true
+    }
+
     fn ground_drag_anywhere(&self, button: Button, _modifiers: Modifiers) -> Option<GroundDrag> {
         (button == Button::Middle).then_some(GroundDrag::Pan)
     }

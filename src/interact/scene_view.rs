@@ -330,6 +330,10 @@ impl Viewpoint for SceneView {
         Some(Eye { camera: self.intrinsics(), eye_from_camera: self.eye_from_camera(), zoom: 1.0, origin_px })
     }
 
+    fn is_photo(&self) -> bool {
+        false
+    }
+
     fn ground_drag_anywhere(&self, button: Button, modifiers: Modifiers) -> Option<GroundDrag> {
         let pans = button == Button::Middle || (button == Button::Left && modifiers.shift);
         pans.then_some(GroundDrag::Pan)

@@ -18,6 +18,9 @@ pub trait Viewpoint {
     /// `None` where no photo is shown.
     fn eye(&self, session: &Session) -> Option<Eye>;
 
+    /// Is its eye the photo's camera, so that its pixels are the photo's?
+    fn is_photo(&self) -> bool;
+
     /// What is meant by a press whatever is under it; `None`: that depends on what is there.
     fn ground_drag_anywhere(&self, button: Button, modifiers: Modifiers) -> Option<GroundDrag>;
 

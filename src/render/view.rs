@@ -19,6 +19,8 @@ pub enum ViewSlot {
     Photo,
     /// The free view, which may be beside it.
     Scene,
+    /// A part of the photo view, larger.
+    Loupe,
     /// Pictures that are read back.
     Export,
 }

@@ -1,5 +1,6 @@
 //! A pose with its history in three words: what state it is in, where it came from, and when.
 
+use super::Pin;
 use crate::math::Pose;
 
 /// From the least that was done to the most.
@@ -34,6 +35,8 @@ pub struct Annotation {
     pub camera_changed: bool,
     /// How sure the program was that estimated an imported pose, in that program's own terms.
     pub score: Option<f64>,
+    /// They stay when the pose is changed by other means.
+    pub pins: Vec<Pin>,
 }
 
 impl Annotation {
@@ -45,6 +48,7 @@ impl Annotation {
             changed_at_ms,
             camera_changed: false,
             score: None,
+            pins: Vec::new(),
         }
     }
 }

@@ -9,6 +9,7 @@ mod depth_map;
 mod look;
 mod mask;
 mod mesh_frame;
+mod pin;
 mod placement;
 mod symmetry;
 
@@ -26,6 +27,7 @@ pub use depth_map::{DepthInMm, DepthMap};
 pub use look::{Layers, Look, OverlayMode, PhotoAdjustment};
 pub use mask::{Mask, MaskId};
 pub use mesh_frame::{MeshFrame, MeshFrameError};
+pub use pin::Pin;
 pub use placement::untouched_pose;
 pub use symmetry::{ContinuousSymmetry, Symmetries};
 

@@ -27,6 +27,7 @@ impl Session {
             Command::SelectAlso(object) => self.select_also(object),
             Command::SetTool(tool) => {
                 self.tool = tool;
+                self.half_pin = None;
                 Ok(Vec::new())
             }
             Command::SetLook(look) => {
@@ -90,6 +91,16 @@ impl Session {
             Command::Step { photo, object, camera_from_object, label } => {
                 self.step((photo, object), camera_from_object, label, now_ms)
             }
+            Command::AddPin { photo, object, pin } => self.add_pin((photo, object), pin),
+            Command::BeginPin(half) => {
+                self.half_pin = half;
+                Ok(Vec::new())
+            }
+            Command::CompletePin { photo, object, pin } => self.complete_pin((photo, object), pin, now_ms),
+            Command::DragPin { photo, object, pin, pixel } => {
+                self.drag_pin((photo, object), pin, pixel, now_ms)
+            }
+            Command::EditPins(change) => self.edit_pins(change, now_ms),
             Command::BeginGesture(label) => {
                 self.begin_gesture(label);
                 Ok(Vec::new())
@@ -102,6 +113,7 @@ impl Session {
                 Ok(Vec::new())
             }
             Command::CancelGesture => {
+                self.half_pin = None;
                 if let Some(gesture) = self.gesture.take() {
                     self.restore(gesture.before);
                 }

@@ -36,6 +36,18 @@ pub fn needs_selected_pose(session: &Session) -> Reason {
     session.selected_annotation().is_none().then_some("no object of this photo is selected")
 }
 
+pub fn needs_pins(session: &Session) -> Reason {
+    let has_pins =
+        session.selected_annotation().is_some_and(|(_, _, annotation)| !annotation.pins.is_empty());
+    (!has_pins).then_some("the selected object has no pins in this photo")
+}
+
+pub fn needs_pins_and_next(session: &Session) -> Reason {
+    let shown = session.photo().map(|photo| photo.id);
+    let is_last = session.scene().photos.last().map(|photo| photo.id) == shown;
+    needs_pins(session).or(is_last.then_some("there is no photo after this one"))
+}
+
 pub fn needs_objects_here(session: &Session) -> Reason {
     let empty = session.photo().is_none_or(|photo| session.scene().objects_in(photo.id).next().is_none());
     empty.then_some("no object is in this photo")

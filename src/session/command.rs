@@ -2,12 +2,16 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
 use thiserror::Error;
 
-use super::{Answer, Batch, CommandId, DatasetImport, LogEntry, Nudge, NudgeSettings, Opening, Panes, Tool};
+use super::{
+    Answer, Batch, CommandId, DatasetImport, HalfPin, LogEntry, Nudge, NudgeSettings, Opening, Panes, Tool,
+};
 use crate::math::{Intrinsics, Pose};
 use crate::scene::{
-    CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, PoseSource, Rgb,
+    CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, Pin, PoseSource,
+    Rgb,
 };
 
 /// One change. Only these change a session.
@@ -96,6 +100,29 @@ pub enum Command {
         camera_from_object: Pose,
         label: &'static str,
     },
+    /// A new pin; it is the last of the pose's pins. Nothing moves yet.
+    AddPin {
+        photo: PhotoId,
+        object: ObjectId,
+        pin: Pin,
+    },
+    /// Half of a pin: what comes next is its other half. `None`: never mind.
+    BeginPin(Option<HalfPin>),
+    /// Both halves of a pin: it is added, and the pose follows.
+    CompletePin {
+        photo: PhotoId,
+        object: ObjectId,
+        pin: Pin,
+    },
+    /// Brings a pin's point to a pixel, within a gesture: the pose follows.
+    DragPin {
+        photo: PhotoId,
+        object: ObjectId,
+        pin: usize,
+        pixel: DVec2,
+    },
+    /// Changes the selected pose's pins; the pose follows.
+    EditPins(PinChange),
     BeginGesture(&'static str),
     /// A pose within a gesture.
     Drag {
@@ -140,6 +167,14 @@ pub enum MaskChange {
     Opacity(f32),
     Visible(bool),
     Object(Option<ObjectId>),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum PinChange {
+    Enabled(usize, bool),
+    Remove(usize),
+    /// Another set of pins in place of these.
+    Replace(Vec<Pin>),
 }
 
 /// Why a command was not carried out; nothing has changed then.

@@ -93,6 +93,7 @@ fn carry(scene: &mut Scene, from: PhotoId, to: PhotoId, now_ms: f64) {
                 changed_at_ms: now_ms,
                 camera_changed: false,
                 score: None,
+                pins: Vec::new(),
                 ..annotation
             };
             scene.annotations.insert((to, object), carried);

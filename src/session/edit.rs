@@ -106,6 +106,12 @@ impl Session {
                 object.mesh = mesh;
                 object.mesh_from_file = frame.0;
             }
+            for ((_, object), annotation) in &mut scene.annotations {
+                if *object == id {
+                    annotation.pins =
+                        annotation.pins.iter().map(|pin| pin.of_transformed(&new_from_old)).collect();
+                }
+            }
         })
     }
 
@@ -158,6 +164,7 @@ impl Session {
             camera_from_object: pose,
             state: AnnotationState::Carried,
             changed_at_ms: now_ms,
+            pins: Vec::new(),
             ..annotation.clone()
         };
         let mut copy = None;

@@ -5,9 +5,11 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::log::Log;
-use super::{Answer, Arrangement, CommandError, Effect, History, Notice, Question, Session, Waiting};
+use super::{
+    Answer, Arrangement, CommandError, Effect, History, Notice, PinChange, Question, Session, Waiting,
+};
 use crate::formats::{CameraFile, Document, Incoming, Outcome, PosesAs};
-use crate::scene::{CameraOrigin, DepthMap, Mask, MeshAsset, ObjectId, PhotoAsset, PhotoId, Scene};
+use crate::scene::{CameraOrigin, DepthMap, Mask, MeshAsset, ObjectId, PhotoAsset, PhotoId, Pin, Scene};
 
 /// The files of one drop, read.
 #[derive(Debug, Clone, Default)]
@@ -16,6 +18,8 @@ pub struct Batch {
     pub meshes: Vec<Arc<MeshAsset>>,
     pub cameras: Vec<CameraFile>,
     pub poses: Vec<Incoming>,
+    /// For the selected object in the photo that is shown.
+    pub pins: Option<Vec<Pin>>,
     /// `None`: the user is asked.
     pub poses_as: Option<PosesAs>,
 }
@@ -57,11 +61,24 @@ impl Session {
         }
         self.keep_selection_valid();
         self.record_imports(&before.scene);
+        let pins = batch.pins;
         if self.scene != before.scene {
             self.history.push("Add files", before);
             self.touched();
         }
+        effects.extend(pins.map(|pins| self.take_pins(pins, now_ms)));
         effects
+    }
+
+    fn take_pins(&mut self, pins: Vec<Pin>, now_ms: f64) -> Effect {
+        let count = pins.len();
+        match self.edit_pins(PinChange::Replace(pins), now_ms) {
+            Ok(_) => Effect::Notify(Notice::info(format!("{count} pins set on the selected object"))),
+            Err(CommandError::NotAvailable(..)) => Effect::Notify(Notice::error(
+                "Pins belong to an object in a photo: load both, select the object, then drop the pins again",
+            )),
+            Err(error) => Effect::Notify(Notice::error(error.to_string())),
+        }
     }
 
     /// Adds each new mesh as an object. It is placed in the photo that is shown, unless the same drop brings poses: they say

@@ -15,6 +15,7 @@ mod history;
 mod import;
 mod log;
 mod nudge;
+mod pins;
 mod pose;
 mod run;
 mod table;
@@ -22,7 +23,7 @@ mod view;
 
 use std::collections::BTreeSet;
 
-pub use command::{Command, CommandError, MaskChange, ObjectChange, PhotoChange};
+pub use command::{Command, CommandError, MaskChange, ObjectChange, PhotoChange, PinChange};
 pub use dataset::DatasetImport;
 pub use depth::with_depth_changed;
 pub use effect::{Answer, Effect, Notice, Pick, PictureKind, PictureRequest, Question, Severity};
@@ -30,6 +31,7 @@ pub use history::MAX_BYTES as HISTORY_BYTES;
 pub use import::{Batch, Opening};
 pub use log::LogEntry;
 pub use nudge::{Nudge, NudgeFrame, NudgeSettings};
+pub use pins::{HalfPin, PinReport};
 pub use table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
 pub use view::{Arrangement, Panes, Tool};
 
@@ -49,6 +51,8 @@ pub struct Session {
     panes: Panes,
     nudge: NudgeSettings,
     tool: Tool,
+    half_pin: Option<HalfPin>,
+    pin_report: pins::ReportCache,
     history: History,
     log: log::Log,
     gesture: Option<Gesture>,
@@ -119,6 +123,11 @@ impl Session {
 
     pub fn tool(&self) -> Tool {
         self.tool
+    }
+
+    /// The half of a pin that waits for the other.
+    pub fn half_pin(&self) -> Option<HalfPin> {
+        self.half_pin
     }
 
     /// What was done to poses, oldest first.

@@ -58,17 +58,18 @@ impl Nudge {
         }
     }
 
-    /// The pose after `factor` steps. Rotations are about the object's centre; a step to the side in the camera's frame moves
-    /// the centre by exactly that many pixels of the photo, at the depth it has.
+    /// The pose after `factor` steps. Rotations are about the pivot, a point of the `object` frame; a step to the side in the
+    /// camera's frame moves it by exactly that many pixels of the photo, at the depth it has.
     pub fn applied(
         self,
         camera_from_object: &Pose,
         camera: &Intrinsics,
         mesh: &Mesh,
+        pivot_mm: DVec3,
         settings: &NudgeSettings,
         factor: f64,
     ) -> Pose {
-        let center_camera_mm = camera_from_object.transform_point(mesh.sphere().center);
+        let center_camera_mm = camera_from_object.transform_point(pivot_mm);
         let pixels = settings.step_px * factor;
         if let Some(axis) = self.rotation_axis() {
             let angle_rad = settings.step_degrees.to_radians() * factor;
@@ -141,7 +142,7 @@ mod tests {
 
     fn applied(nudge: Nudge, settings: NudgeSettings, factor: f64) -> (Pose, Mesh) {
         let mesh = test_shapes::sphere(50.0, 8, 8);
-        (nudge.applied(&start(), &camera(), &mesh, &settings, factor), mesh)
+        (nudge.applied(&start(), &camera(), &mesh, mesh.sphere().center, &settings, factor), mesh)
     }
 
     #[test]

@@ -75,7 +75,8 @@ impl Session {
         let present = annotation.camera_from_object;
         let camera = self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?.camera;
         let mesh = &self.scene.object(object).ok_or(CommandError::NoObject(object))?.mesh.mesh;
-        let pose = nudge.applied(&present, &camera, mesh, &self.nudge, factor);
+        let pivot_mm = self.pivot_mm(photo, object).unwrap_or_else(|| mesh.sphere().center);
+        let pose = nudge.applied(&present, &camera, mesh, pivot_mm, &self.nudge, factor);
         self.step((photo, object), pose, nudge.label(), now_ms)
     }
 
@@ -156,6 +157,7 @@ impl Session {
         };
         let before = self.scene.clone();
         self.change("Reset pose", |scene| {
+            // Its pins go too: they would bring back what was given up.
             scene.annotations.insert((photo, object), Annotation::untouched(pose, now_ms));
         })?;
         self.record_changes(&before, "Reset pose");
@@ -186,7 +188,7 @@ impl Session {
     }
 
     /// The poses of one motion: the target's own, and those of what is linked to it or selected with it.
-    fn with_followers(&self, origin: &Scene, target: Target, pose: Pose) -> Vec<(Target, Pose)> {
+    pub(super) fn with_followers(&self, origin: &Scene, target: Target, pose: Pose) -> Vec<(Target, Pose)> {
         let (photo, object) = target;
         let mut poses = vec![(target, pose)];
         let Some(start) = origin.annotation(photo, object).map(|annotation| annotation.camera_from_object)
@@ -216,7 +218,7 @@ impl Session {
     }
 
     /// May a pose be put there, whether or not there is one?
-    fn check_settable(&self, (photo, object): Target) -> Result<(), CommandError> {
+    pub(super) fn check_settable(&self, (photo, object): Target) -> Result<(), CommandError> {
         let in_photo = self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?;
         let target = self.scene.object(object).ok_or(CommandError::NoObject(object))?;
         if in_photo.locked {
@@ -256,8 +258,9 @@ impl Session {
         Ok(Vec::new())
     }
 
-    fn write_poses(&mut self, poses: Vec<(Target, Pose)>, source: PoseSource, now_ms: f64) {
+    pub(super) fn write_poses(&mut self, poses: Vec<(Target, Pose)>, source: PoseSource, now_ms: f64) {
         for (target, camera_from_object) in poses {
+            let before = self.scene.annotations.remove(&target);
             let annotation = Annotation {
                 camera_from_object,
                 state: AnnotationState::Posed,
@@ -265,6 +268,7 @@ impl Session {
                 changed_at_ms: now_ms,
                 camera_changed: false,
                 score: None,
+                pins: before.map_or_else(Vec::new, |before| before.pins),
             };
             self.scene.annotations.insert(target, annotation);
         }

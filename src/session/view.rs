@@ -54,4 +54,17 @@ pub enum Tool {
     #[default]
     Move,
     Rotate,
+    /// Sets pins on it, and drags them to their pixels.
+    Pin,
+}
+
+impl Tool {
+    /// Its name in the page's API.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Move => "move",
+            Self::Rotate => "rotate",
+            Self::Pin => "pin",
+        }
+    }
 }

@@ -11,5 +11,7 @@ pub mod pins;
 pub mod snap;
 #[cfg(test)]
 mod test_chance;
+mod uncertainty;
 
 pub use motion::TwistCovariance;
+pub use uncertainty::Uncertainty;

@@ -81,7 +81,8 @@ pub const MENUS: [MenuPlan; 5] = [
     MenuPlan {
         title: "Pose",
         groups: &[
-            &[CommandId::MoveTool, CommandId::RotateTool],
+            &[CommandId::MoveTool, CommandId::RotateTool, CommandId::PinTool],
+            &[CommandId::SolvePins, CommandId::ClearPins, CommandId::CopyPinsToNext, CommandId::ExportPins],
             &[CommandId::ConfirmAndNext, CommandId::Reopen],
             &[
                 CommandId::ResetPose,

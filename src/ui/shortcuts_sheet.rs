@@ -159,10 +159,15 @@ fn gestures(ui: &mut Ui, modifiers: &ModifierMap, matches: &dyn Fn(&str) -> bool
     let gestures = [
         ("Click".to_owned(), "select an object (Alt: the one behind; Ctrl: add to the selection)"),
         ("Drag an object".to_owned(), "move it; the point you grab stays under the cursor"),
-        ("Right drag an object".to_owned(), "turn it about its centre"),
+        ("Right drag an object".to_owned(), "turn it about its centre, or its one pin"),
         (format!("{roll} + right drag"), "roll it about the line of sight"),
         (format!("{depth} + wheel"), "nearer or farther, 1 px of its width a notch"),
         (format!("{fine} while dragging"), "ten times finer"),
+        (
+            "Pin tool: drag a point".to_owned(),
+            "pin it, and bring it to its pixel; the pose follows. A click pins it where it is",
+        ),
+        ("Pin tool: click the ground".to_owned(), "the pixel of a pin; then click its point on the object"),
         ("Wheel".to_owned(), "zoom to the cursor"),
         ("Drag the ground, middle drag".to_owned(), "move the photo"),
         ("Double click".to_owned(), "zoom to the object, or show the whole photo"),

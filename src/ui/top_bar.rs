@@ -52,7 +52,11 @@ pub fn draw(
 }
 
 fn tools(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
-    for (tool, id) in [(Tool::Move, CommandId::MoveTool), (Tool::Rotate, CommandId::RotateTool)] {
+    for (tool, id) in [
+        (Tool::Move, CommandId::MoveTool),
+        (Tool::Rotate, CommandId::RotateTool),
+        (Tool::Pin, CommandId::PinTool),
+    ] {
         let button = Button::new(id.info().text).selected(session.tool() == tool);
         if command_button(ui, button, id.info(), session) {
             commands.push(Command::Run(id));

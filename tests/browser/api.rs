@@ -49,6 +49,13 @@ pub struct Pose {
     pub state: String,
     pub source: String,
     pub changed_at_ms: f64,
+    #[serde(default)]
+    pub pins: Vec<Pin>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Pin {
+    pub pixel: Point,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -136,6 +136,7 @@ impl BopFolder {
             }
             for truth in &truths[&image] {
                 let annotation = Annotation {
+                    pins: Vec::new(),
                     state: AnnotationState::Posed,
                     source: PoseSource::Imported,
                     ..Annotation::untouched(truth.pose(), NOW_MS)

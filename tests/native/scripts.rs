@@ -3,8 +3,10 @@
 use glam::DVec3;
 use pinpose::formats::PosesAs;
 use pinpose::math::{Intrinsics, Pose};
-use pinpose::scene::{AnnotationState, CameraOrigin, PoseSource};
-use pinpose::session::{Answer, COMMANDS, Command, CommandId, Effect, ObjectChange, Question, Session};
+use pinpose::scene::{AnnotationState, CameraOrigin, Pin, PoseSource};
+use pinpose::session::{
+    Answer, COMMANDS, Command, CommandId, Effect, HalfPin, ObjectChange, PinChange, Question, Session,
+};
 
 use crate::support::{CAMERA_JSON, NOW_MS, box_mesh, drop_files, flat_photo, small_session, text_file};
 
@@ -218,6 +220,13 @@ fn every_command_of_the_table_does_something() {
                 }
                 run(&mut session, Command::Select(None));
             }
+            CommandId::SolvePins
+            | CommandId::ClearPins
+            | CommandId::CopyPinsToNext
+            | CommandId::ExportPins => {
+                let beside = shown_pose(&session).translated(DVec3::X * 5.0);
+                set_pins(&mut session, &beside);
+            }
             CommandId::Redo => drop(run(&mut session, Command::Run(CommandId::Undo))),
             CommandId::PreviousPhoto => drop(run(&mut session, Command::Run(CommandId::NextPhoto))),
             CommandId::MoveTool => drop(run(&mut session, Command::Run(CommandId::RotateTool))),
@@ -230,6 +239,138 @@ fn every_command_of_the_table_does_something() {
         let effects = run(&mut session, Command::Run(info.id));
         assert!(!effects.is_empty() || format!("{session:?}") != before, "{} does nothing", info.name);
     }
+}
+
+/// Pins at five corners of the box, where a pose has them; the pose stays.
+fn set_pins(session: &mut Session, camera_from_object: &Pose) {
+    let (photo, object, _) = session.selected_annotation().unwrap();
+    let camera = session.photo().unwrap().camera;
+    let corners = [
+        [-40.0, -30.0, -20.0],
+        [40.0, -30.0, -20.0],
+        [-40.0, 30.0, -20.0],
+        [-40.0, -30.0, 20.0],
+        [40.0, 30.0, 20.0],
+    ];
+    for corner in corners.map(DVec3::from_array) {
+        let pixel = camera.project(camera_from_object.transform_point(corner)).unwrap();
+        run(session, Command::AddPin { photo, object, pin: Pin::new(corner, pixel) });
+    }
+}
+
+#[test]
+fn pins_that_are_dragged_bring_the_pose_along() {
+    let mut session = small_session();
+    let (photo, object, annotation) = session.selected_annotation().unwrap();
+    let start = annotation.camera_from_object;
+    let camera = session.photo().unwrap().camera;
+    let target =
+        Pose::exp(DVec3::new(0.3, -0.5, 0.2), DVec3::ZERO) * start.translated(DVec3::new(40.0, -10.0, 90.0));
+    // Added where they are, they move nothing.
+    set_pins(&mut session, &start);
+    assert_eq!(shown_pose(&session), start);
+    let points: Vec<DVec3> =
+        session.selected_annotation().unwrap().2.pins.iter().map(|pin| pin.point_mm).collect();
+    for (pin, point) in points.iter().enumerate() {
+        run(&mut session, Command::BeginGesture("Drag pin"));
+        let pixel = camera.project(target.transform_point(*point)).unwrap();
+        run(&mut session, Command::DragPin { photo, object, pin, pixel });
+        run(&mut session, Command::EndGesture);
+    }
+    let found = shown_pose(&session);
+    // Exact pixels: what is left is where the solver stops, 1e-6 px or so, at 0.3 mm a pixel.
+    assert!(found.angle_to(&target) < 1e-6, "{}", found.angle_to(&target));
+    assert!(found.translation_mm.distance(target.translation_mm) < 1e-4);
+    assert_eq!(session.selected_annotation().unwrap().2.source, PoseSource::Pins);
+    let report = session.pin_report().unwrap();
+    assert!(report.is_solved && report.rms_px < 1e-4 && report.misclicks.is_empty(), "{report:?}");
+    assert!(report.uncertainty.unwrap().depth_mm > report.uncertainty.unwrap().lateral_mm);
+    // Each drag is a step: the last one is taken back alone, with its pose.
+    run(&mut session, Command::Run(CommandId::Undo));
+    assert_ne!(shown_pose(&session), found);
+    run(&mut session, Command::Run(CommandId::Redo));
+    assert_eq!(shown_pose(&session), found);
+}
+
+#[test]
+fn a_way_with_one_pin_there_and_back_ends_where_it_began() {
+    let mut session = small_session();
+    let (photo, object, annotation) = session.selected_annotation().unwrap();
+    let start = annotation.camera_from_object;
+    let camera = session.photo().unwrap().camera;
+    let point = DVec3::new(-40.0, -30.0, -20.0);
+    let pixel = camera.project(start.transform_point(point)).unwrap();
+    run(&mut session, Command::BeginGesture("Add pin"));
+    run(&mut session, Command::AddPin { photo, object, pin: Pin::new(point, pixel) });
+    for offset in [20.0, 80.0, 50.0, 0.0] {
+        let pixel = pixel + glam::DVec2::new(offset, -offset / 2.0);
+        run(&mut session, Command::DragPin { photo, object, pin: 0, pixel });
+        let seen = camera.project(shown_pose(&session).transform_point(point)).unwrap();
+        // The solver's last step; one pin can always be met.
+        assert!(seen.distance(pixel) < 1e-3, "{}", seen.distance(pixel));
+    }
+    run(&mut session, Command::EndGesture);
+    let end = shown_pose(&session);
+    assert!(end.angle_to(&start) < 1e-6 && end.translation_mm.distance(start.translation_mm) < 1e-3);
+    // It is what the object turns about.
+    assert_eq!(session.pivot_mm(photo, object), Some(point));
+}
+
+#[test]
+fn a_pin_off_its_place_is_named_and_can_be_switched_off() {
+    let mut session = small_session();
+    let target = shown_pose(&session).translated(DVec3::new(5.0, 3.0, 20.0));
+    set_pins(&mut session, &target);
+    let (photo, object, annotation) = session.selected_annotation().unwrap();
+    let pixel = annotation.pins[4].pixel + glam::DVec2::new(30.0, -40.0);
+    run(&mut session, Command::BeginGesture("Drag pin"));
+    run(&mut session, Command::DragPin { photo, object, pin: 4, pixel });
+    run(&mut session, Command::EndGesture);
+    assert_eq!(session.pin_report().unwrap().misclicks, [4]);
+    run(&mut session, Command::EditPins(PinChange::Enabled(4, false)));
+    let report = session.pin_report().unwrap();
+    assert!(report.misclicks.is_empty() && report.rms_px < 1e-4, "{report:?}");
+    assert!(report.residuals_px[4].unwrap().length() > 40.0, "it keeps its residual");
+    assert!(shown_pose(&session).translation_mm.distance(target.translation_mm) < 1e-3);
+    run(&mut session, Command::EditPins(PinChange::Remove(4)));
+    assert_eq!(session.selected_annotation().unwrap().2.pins.len(), 4);
+}
+
+#[test]
+fn a_pin_of_two_halves_moves_the_object_there() {
+    let mut session = small_session();
+    let (photo, object, _) = session.selected_annotation().unwrap();
+    let pixel = glam::DVec2::new(100.0, 120.0);
+    run(&mut session, Command::BeginPin(Some(HalfPin::Pixel(pixel))));
+    let point = DVec3::new(40.0, 30.0, 20.0);
+    run(&mut session, Command::CompletePin { photo, object, pin: Pin::new(point, pixel) });
+    assert_eq!(session.half_pin(), None);
+    let seen = session.photo().unwrap().camera.project(shown_pose(&session).transform_point(point)).unwrap();
+    assert!(seen.distance(pixel) < 1e-3);
+    run(&mut session, Command::BeginPin(Some(HalfPin::Point(object, point))));
+    run(&mut session, Command::Run(CommandId::Cancel));
+    assert_eq!(session.half_pin(), None);
+}
+
+#[test]
+fn pins_are_saved_and_dropped_again() {
+    let mut session = small_session();
+    let target = shown_pose(&session).translated(DVec3::new(5.0, 3.0, 20.0));
+    set_pins(&mut session, &target);
+    let pins = session.selected_annotation().unwrap().2.pins.clone();
+    let effects = run(&mut session, Command::Run(CommandId::ExportPins));
+    let Some(Effect::Download { file_name, bytes }) = effects.first() else { panic!("{effects:?}") };
+    assert_eq!(file_name, "photo-box-pins.json");
+    let file = text_file(file_name, std::str::from_utf8(bytes).unwrap());
+    run(&mut session, Command::Run(CommandId::ClearPins));
+    assert!(session.selected_annotation().unwrap().2.pins.is_empty());
+    drop_files(&mut session, &[file], None);
+    assert_eq!(session.selected_annotation().unwrap().2.pins, pins);
+    assert!(shown_pose(&session).translation_mm.distance(target.translation_mm) < 1e-3);
+    let document = session.document(pinpose::formats::Keep::Everything);
+    let text = pinpose::formats::write_document(&document);
+    let again = pinpose::formats::read_document(text.as_bytes()).unwrap();
+    assert_eq!(again, document);
 }
 
 #[test]

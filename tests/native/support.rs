@@ -113,6 +113,7 @@ pub fn batch_of(files: &[NamedFile], poses_as: Option<PosesAs>) -> Batch {
             kind => match parse_text_or_archive(file, kind).unwrap() {
                 Parsed::Camera(camera) => batch.cameras.push(camera),
                 Parsed::Poses(poses) => batch.poses.push(poses),
+                Parsed::Pins(pins) => batch.pins = Some(pins),
                 other => panic!("{}: {other:?}", file.name),
             },
         }

@@ -1,11 +1,11 @@
 //! Between the live scene and the document, both ways.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 
 use super::{
     CameraOriginEntry, ContinuousSymmetryEntry, Conventions, DepthEntry, Document, MaskEntry, ObjectEntry,
-    PhotoEntry, PoseEntry, ReferenceEntry, ReferencePoseEntry, SourceEntry, StateEntry, SymmetriesEntry,
-    VERSION, ViewSettings,
+    PhotoEntry, PinEntry, PoseEntry, ReferenceEntry, ReferencePoseEntry, SourceEntry, StateEntry,
+    SymmetriesEntry, VERSION, ViewSettings,
 };
 use crate::formats::incoming::{IncomingReference, ObjectLook, PhotoLook};
 use crate::formats::{
@@ -14,7 +14,7 @@ use crate::formats::{
 use crate::math::{Distortion, Intrinsics, Pose};
 use crate::scene::{
     Annotation, AnnotationState, CameraOrigin, ContinuousSymmetry, DepthMap, Mask, MeshFrame, Object, Photo,
-    PoseSource, Rgb, Scene, Sha256, Symmetries,
+    Pin, PoseSource, Rgb, Scene, Sha256, Symmetries,
 };
 
 /// Which poses a document holds.
@@ -156,6 +156,7 @@ impl Document {
             source: pose.source.into(),
             changed_at_ms: Some(pose.changed_at_ms),
             score: pose.score,
+            pins: read_pins(&pose.pins, place)?,
         })
     }
 
@@ -269,7 +270,36 @@ fn pose_entry(object: &Object, annotation: &Annotation) -> PoseEntry {
         changed_at_ms: annotation.changed_at_ms,
         camera_changed: annotation.camera_changed,
         score: annotation.score,
+        pins: annotation.pins.iter().map(pin_entry).collect(),
     }
+}
+
+fn pin_entry(pin: &Pin) -> PinEntry {
+    PinEntry {
+        point: pin.point_mm.to_array(),
+        pixel: pin.pixel.to_array(),
+        weight: pin.weight,
+        enabled: pin.enabled,
+    }
+}
+
+fn read_pins(entries: &[PinEntry], place: &str) -> Result<Vec<Pin>, FormatError> {
+    let read = |(index, entry): (usize, &PinEntry)| {
+        let pin = Pin {
+            point_mm: DVec3::from_array(entry.point),
+            pixel: DVec2::from_array(entry.pixel),
+            weight: entry.weight,
+            enabled: entry.enabled,
+        };
+        let is_good = pin.point_mm.is_finite() && pin.pixel.is_finite() && (0.0..1e9).contains(&pin.weight);
+        is_good.then_some(pin).ok_or_else(|| {
+            FormatError::at(
+                format!("{place}.pins[{index}]"),
+                "finite numbers and a weight of 0 or more expected",
+            )
+        })
+    };
+    entries.iter().enumerate().map(read).collect()
 }
 
 fn object_entry(object: &Object) -> ObjectEntry {

@@ -79,6 +79,7 @@ fn finish(incoming: &mut Incoming, camera: &CameraFile, entry: Option<Entry<'_>>
         source: PoseSource::Imported,
         changed_at_ms: None,
         score: None,
+        pins: Vec::new(),
     };
     let key = FileKey::Stem(entry.photo.to_owned());
     match incoming.photos.iter_mut().find(|photo| photo.key == key) {

@@ -12,36 +12,12 @@ mod solution;
 mod spread;
 mod sqpnp;
 
-use glam::{DVec2, DVec3};
 use thiserror::Error;
 
+pub use crate::scene::Pin;
 pub use advice::PinAdvice;
 pub use focal::{FocalError, FocalSolution, solve_focal};
 pub use solution::{PinPose, PinSolution, solve_pins};
-
-/// A point of the mesh and the pixel where it belongs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pin {
-    /// In the `object` frame, in millimetres.
-    pub point_mm: DVec3,
-    /// In the `image` frame.
-    pub pixel: DVec2,
-    /// How much it counts; 1 for a click like any other.
-    pub weight: f64,
-    /// A pin that is switched off keeps its residual but does not pull.
-    pub enabled: bool,
-}
-
-impl Pin {
-    /// A pin that counts.
-    pub fn new(point_mm: DVec3, pixel: DVec2) -> Self {
-        Self { point_mm, pixel, weight: 1.0, enabled: true }
-    }
-
-    fn counts(&self) -> bool {
-        self.enabled && self.weight > 0.0
-    }
-}
 
 /// What is known of the clicks and the object.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,3 +1,5 @@
+use glam::{DVec2, DVec3};
+
 use super::super::linear::solve;
 use super::super::test_chance::{Chance, camera};
 use super::*;

@@ -12,6 +12,7 @@ mod number_field;
 mod objects;
 mod output;
 mod photos;
+mod pins;
 mod pose_fields;
 mod pose_numbers;
 mod references;
@@ -92,6 +93,7 @@ fn control_and_display(ui: &mut Ui, session: &Session, state: &mut PanelState, c
     ui.spacing_mut().item_spacing.y = 2.0;
     section::caption(ui, "Control");
     camera::draw(ui, session, &mut state.camera, commands);
+    pins::draw(ui, session, commands);
     pose_fields::draw(ui, session, &mut state.pose, commands);
     mesh_frame::draw(ui, session, &mut state.mesh, commands);
     nudge::draw(ui, session, commands);

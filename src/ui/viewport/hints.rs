@@ -3,7 +3,7 @@
 use egui::{Align2, Area, Id, Order, Rect, RichText, Ui, Vec2};
 
 use crate::scene::{AnnotationState, ObjectId, PhotoId};
-use crate::session::{Command, Session};
+use crate::session::{Command, HalfPin, Session, Tool};
 use crate::ui::{Asked, Surroundings, theme};
 
 /// In a narrower view the line goes below the choices in the corner.
@@ -39,6 +39,21 @@ pub fn draw(ui: &Ui, rect: Rect, session: &Session, around: &Surroundings<'_>, a
         });
 }
 
+/// What the next pin is for.
+fn pin_hint(session: &Session) -> Option<Hint> {
+    let (_, _, annotation) = session.selected_annotation()?;
+    let text = match (session.half_pin(), annotation.pins.len()) {
+        (Some(HalfPin::Pixel(_)), _) => "Now click the same point on the object, here or in the scene view",
+        (Some(HalfPin::Point(..)), _) => "Now click where that point is in the photo",
+        (None, 0) => "Press on a point of the object and drag it to where it is in the photo",
+        (None, 1) => "One pin moves the object. Drag a second point, far from it: that sets roll and size",
+        (None, 2) => "Two more points, off their line, set the tilt",
+        (None, 3) => "One more point settles it",
+        _ => return None,
+    };
+    Some(Hint { text: text.to_owned(), place: None })
+}
+
 fn hint(session: &Session) -> Option<Hint> {
     let scene = session.scene();
     let selected = session.selected().and_then(|id| scene.object(id));
@@ -49,6 +64,9 @@ fn hint(session: &Session) -> Option<Hint> {
     }
     if scene.objects_in(photo.id).next().is_none() && selected.is_none() {
         return say("Nothing is placed in this photo: choose an object in the list");
+    }
+    if session.tool() == Tool::Pin && session.selected_annotation().is_some() {
+        return pin_hint(session);
     }
     match (selected, session.selected_annotation()) {
         (Some(object), None) => {

@@ -7,13 +7,14 @@ mod hints;
 mod orientation;
 mod paint;
 mod photo;
+mod pins;
 mod scene;
 
 use egui::{CursorIcon, Id, Rect, Response, Sense, Ui, Vec2};
 
 use super::{Asked, Surroundings, UiState, theme};
 use crate::interact::Pane;
-use crate::session::{Arrangement, Session};
+use crate::session::{Arrangement, Session, Tool};
 
 pub use paint::SharedRenderer;
 
@@ -147,6 +148,8 @@ fn cursor_icon(ui: &Ui, response: &Response, pane: Pane, session: &Session, arou
     } else if !response.hovered() {
     } else if pane == Pane::Photo && hands.wipe_is_lit(session) {
         ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
+    } else if session.tool() == Tool::Pin && hands.hovered_pin(session).is_none() {
+        ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
     } else if hands.hovered_handle(pane, session).is_some() || hands.hit_under_pointer(session).is_some() {
         ui.ctx().set_cursor_icon(CursorIcon::Grab);
     }
@@ -161,6 +164,10 @@ mod colors {
         [Color32::from_rgb(244, 72, 72), Color32::from_rgb(84, 208, 96), Color32::from_rgb(88, 148, 255)];
     pub const VIEW_HANDLES: Color32 = Color32::from_rgb(235, 238, 243);
     pub const SHADE: Color32 = Color32::from_black_alpha(110);
+    /// Light on dark photos, told from the light ones by its dark rim; a misclick has an exclamation mark too.
+    pub const PIN: Color32 = Color32::from_rgb(255, 209, 71);
+    pub const PIN_OFF: Color32 = Color32::from_rgb(176, 180, 188);
+    pub const MISCLICK: Color32 = Color32::from_rgb(255, 110, 84);
     pub const OVERLAY: Color32 = Color32::from_black_alpha(170);
     pub const TEXT: Color32 = Color32::from_rgb(222, 226, 233);
 }

@@ -2,21 +2,23 @@
 
 use egui::{Color32, Rect, Stroke, Ui, Vec2};
 
-use super::{ViewportPlace, corners, cursor_icon, gizmo, paint};
+use super::{ViewportPlace, corners, cursor_icon, gizmo, paint, pins};
 use crate::interact::{Pane, Viewpoint as _};
-use crate::render::{Picture, Subject, ViewSlot, picture_of};
+use crate::render::{Item, Picture, Subject, ViewSlot, picture_of};
+use crate::scene::Rgb;
 use crate::session::Session;
+use crate::solve::pins::PinPose;
 use crate::ui::{Surroundings, theme};
 
 pub fn draw(ui: &mut Ui, available: Rect, session: &Session, around: &Surroundings<'_>) -> ViewportPlace {
     let (place, response) = super::place(ui, available, "Viewport");
-    if let (Some(renderer), Some(picture)) =
-        (around.renderer, picture(session, around, place.pixels_per_point))
-    {
-        paint::picture(ui, renderer, ViewSlot::Photo, picture, place);
+    let picture = picture(session, around, place.pixels_per_point);
+    if let (Some(renderer), Some(picture)) = (around.renderer, &picture) {
+        paint::picture(ui, renderer, ViewSlot::Photo, picture.clone(), place);
     }
     wipe_grip(ui, &place, session, around);
     gizmo::draw(ui, &place, Pane::Photo, &around.hands.photo_view, session, around);
+    pins::draw(ui, &place, session, around, picture.as_ref());
     cursor_icon(ui, &response, Pane::Photo, session, around);
     corners::photo(ui, place.rect, session, around);
     place
@@ -33,9 +35,27 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         ..Subject::new(session.scene(), photo.id, around.pixels.clone())
     };
     let mut picture = picture_of(&subject)?;
+    picture.ghosts.extend(other_fits(session));
     picture.rect = around.hands.photo_view.visible_rect();
     picture.in_motion = around.hands.is_moving();
     Some(picture)
+}
+
+/// What else the pins allow, outlined in the pins' colour.
+fn other_fits(session: &Session) -> Vec<Item> {
+    let object = session.selected_annotation().and_then(|(_, object, _)| session.scene().object(object));
+    let (Some(object), Some(report)) = (object, session.pin_report()) else { return Vec::new() };
+    let [red, green, blue, _] = super::colors::PIN.to_array();
+    let fit = |(number, other): (usize, &PinPose)| Item {
+        mesh: object.mesh.clone(),
+        camera_from_object: other.camera_from_object,
+        color: Rgb([red, green, blue]),
+        opacity: 0.0,
+        // Apart from the references' numbers, which go up from 1.
+        id: 127 - (number % 8) as u8,
+        selected: false,
+    };
+    report.alternatives.iter().enumerate().map(fit).collect()
 }
 
 /// The line where the overlay ends, with something to hold it by.

@@ -2,11 +2,11 @@
 
 use egui::{Rect, Ui};
 
-use super::{ViewportPlace, corners, cursor_icon, gizmo, orientation, paint};
-use crate::interact::{Pane, image_distance_mm, other_cameras};
+use super::{ViewportPlace, corners, cursor_icon, gizmo, orientation, paint, pins};
+use crate::interact::{Pane, Viewpoint as _, image_distance_mm, other_cameras};
 use crate::render::{FreeView, OtherCamera, Picture, Subject, ViewSlot, scene_picture_of};
 use crate::scene::{Look, Rgb};
-use crate::session::Session;
+use crate::session::{HalfPin, Session};
 use crate::ui::{Asked, Surroundings};
 
 const OTHER_CAMERAS: Rgb = Rgb([120, 126, 138]);
@@ -25,10 +25,21 @@ pub fn draw(
         paint::picture(ui, renderer, ViewSlot::Scene, picture, place);
     }
     gizmo::draw(ui, &place, Pane::Scene, &around.hands.scene_view, session, around);
+    half_pin(ui, &place, session, around);
     cursor_icon(ui, &response, Pane::Scene, session, around);
     corners::scene(ui, place.rect, session, around);
     orientation::draw(ui, &place, &around.hands.scene_view, asked);
     place
+}
+
+/// The point of the object that waits for its pixel.
+fn half_pin(ui: &Ui, place: &ViewportPlace, session: &Session, around: &Surroundings<'_>) {
+    let Some(HalfPin::Point(object, point_mm)) = session.half_pin() else { return };
+    let (Some(photo), Some(eye)) = (session.photo(), around.hands.scene_view.eye(session)) else { return };
+    let Some(annotation) = session.scene().annotation(photo.id, object) else { return };
+    if let Some(seen) = eye.project(annotation.camera_from_object.transform_point(point_mm)) {
+        pins::draw_waiting(&ui.painter().with_clip_rect(place.rect), place.position(seen));
+    }
 }
 
 fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) -> Option<Picture> {

@@ -72,7 +72,7 @@ fn pose_sample(page: &mut Page, linemod: &Linemod, sample: &Sample) -> anyhow::R
     ensure!(start.state == "untouched", "The object does not begin at its start pose");
     let k = state.shown_photo()?.k;
     let start_add_mm = add_mm(&start.camera_from_object, &sample.camera_from_object, &shape.vertices);
-    let mut expert = Expert { page, k, shape, truth: sample.camera_from_object, gestures: 0 };
+    let mut expert = Expert::new(page, k, shape, sample.camera_from_object);
     expert.work()?;
     let pose = expert.page.selected_pose()?.camera_from_object;
     let add_mm = add_mm(&pose, &expert.truth, &expert.shape.vertices);
@@ -80,15 +80,15 @@ fn pose_sample(page: &mut Page, linemod: &Linemod, sample: &Sample) -> anyhow::R
 }
 
 /// What the expert knows of the object.
-struct Shape {
-    vertices: Vec<Vector>,
-    center: Vector,
-    radius_mm: f64,
+pub(super) struct Shape {
+    pub vertices: Vec<Vector>,
+    pub center: Vector,
+    pub radius_mm: f64,
 }
 
 impl Shape {
     /// Reads the vertices of a PLY; the sphere is that about the middle of their box.
-    fn of_ply(file: &File) -> anyhow::Result<Shape> {
+    pub fn of_ply(file: &File) -> anyhow::Result<Shape> {
         let vertices = crate::data::ply_vertices(file)?;
         let ends = |axis: usize| {
             let values = vertices.iter().map(|vertex| vertex[axis]);
@@ -101,12 +101,18 @@ impl Shape {
     }
 }
 
-struct Expert<'a> {
-    page: &'a mut Page,
-    k: [[f64; 3]; 3],
-    shape: Shape,
+pub(super) struct Expert<'a> {
+    pub page: &'a mut Page,
+    pub k: [[f64; 3]; 3],
+    pub shape: Shape,
     truth: Matrix,
-    gestures: u32,
+    pub gestures: u32,
+}
+
+impl<'a> Expert<'a> {
+    pub fn new(page: &'a mut Page, k: [[f64; 3]; 3], shape: Shape, truth: Matrix) -> Self {
+        Self { page, k, shape, truth, gestures: 0 }
+    }
 }
 
 impl Expert<'_> {
@@ -169,7 +175,7 @@ impl Expert<'_> {
     }
 
     /// Ctrl + right drag about the object's centre on screen.
-    fn roll(&mut self, fine: bool) -> anyhow::Result<()> {
+    pub fn roll(&mut self, fine: bool) -> anyhow::Result<()> {
         let angle = self.missing_rotation()?[2];
         if angle.abs() < if fine { 0.003 } else { 0.05 } {
             return Ok(());
@@ -197,7 +203,7 @@ impl Expert<'_> {
     }
 
     /// Right drag: the side that faces the viewer follows the cursor.
-    fn turn(&mut self, fine: bool) -> anyhow::Result<()> {
+    pub fn turn(&mut self, fine: bool) -> anyhow::Result<()> {
         let [x, y, _] = self.missing_rotation()?;
         let radius = self.turn_radius_on_page()?;
         let scale = if fine { 10.0 } else { 1.0 };

@@ -1,5 +1,6 @@
 //! The flows: what a user does with the page, on which backends.
 
+mod annotator;
 mod bad_input;
 mod datasets;
 mod expert;
@@ -69,6 +70,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "large-photo", large::large_photo_flow),
     Flow::on(WEBGPU, "expert", expert::three_samples),
     Flow::on(BOTH, "expert-all", expert::all_samples).long(),
+    Flow::on(WEBGPU, "pins", annotator::pins),
     Flow::on(WEBGL, "dataset-folder", datasets::folder),
     Flow::on(WEBGL, "dataset-zip", datasets::zip),
     Flow::on(WEBGL, "dataset-thousand", datasets::thousand_frames).long(),

@@ -170,7 +170,7 @@ impl Texts {
                 self.cameras.push((path.to_owned(), camera));
             }
             Ok(Parsed::Poses(poses)) => self.poses.push(poses),
-            Ok(Parsed::Photo(_) | Parsed::Mesh(_) | Parsed::Workspace(_)) => {}
+            Ok(Parsed::Photo(_) | Parsed::Mesh(_) | Parsed::Workspace(_) | Parsed::Pins(_)) => {}
             Err(error) => dataset.miss_file(path, &error),
         }
     }

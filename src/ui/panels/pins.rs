@@ -1,0 +1,136 @@
+//! The selected pose's pins: how well each fits, what is wrong with them, and how sure the pose is.
+
+use egui::{Align, Layout, RichText, Ui, Vec2};
+
+use super::list::ROW_HEIGHT;
+use super::number_field::note;
+use super::section::section;
+use crate::scene::{Pin, PoseSource};
+use crate::session::{Command, CommandId, PinChange, PinReport, Session};
+use crate::solve::Uncertainty;
+use crate::solve::pins::PinPose;
+use crate::ui::command_button::{command_button, command_icon};
+use crate::ui::icons::{Icon, icon_button};
+
+pub fn draw(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+    let Some((photo, object, annotation)) = session.selected_annotation() else { return };
+    let mut asked = Vec::new();
+    let clear = |ui: &mut Ui| {
+        if !annotation.pins.is_empty()
+            && command_icon(ui, Icon::Trash, CommandId::ClearPins, session).clicked()
+        {
+            asked.push(Command::Run(CommandId::ClearPins));
+        }
+    };
+    let mut inside = Vec::new();
+    section(ui, "Pins", true, clear, |ui| {
+        let Some(report) = session.pin_report() else {
+            let text =
+                "With the Pin tool (X): click a point of the object, then drag it to its place in the photo.";
+            note(ui, text, false);
+            return;
+        };
+        for (number, pin) in annotation.pins.iter().enumerate() {
+            row(ui, number, pin, &report, &mut inside);
+        }
+        advice(ui, &report);
+        for (number, other) in report.alternatives.iter().enumerate() {
+            alternative(ui, number, other, &mut inside, |camera_from_object| Command::SetPose {
+                photo,
+                object,
+                camera_from_object,
+                source: PoseSource::Pins,
+            });
+        }
+        if let Some(uncertainty) = &report.uncertainty {
+            sureness(ui, uncertainty, report.is_solved);
+        }
+        actions(ui, session, &report, &mut inside);
+    });
+    commands.extend(asked.into_iter().chain(inside));
+}
+
+fn row(ui: &mut Ui, number: usize, pin: &Pin, report: &PinReport, commands: &mut Vec<Command>) {
+    let size = Vec2::new(ui.available_width(), ROW_HEIGHT);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let mut enabled = pin.enabled;
+        let checkbox = ui.checkbox(&mut enabled, format!("Pin {}", number + 1));
+        if checkbox.on_hover_text("Whether this pin pulls on the pose").changed() {
+            commands.push(Command::EditPins(PinChange::Enabled(number, enabled)));
+        }
+        let is_misclick = report.misclicks.contains(&number);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let label = format!("Remove pin {}", number + 1);
+            if icon_button(ui, Icon::Close, &label, &label, true).clicked() {
+                commands.push(Command::EditPins(PinChange::Remove(number)));
+            }
+            let residual = report.residuals_px.get(number).copied().flatten();
+            let words = residual.map_or("behind the camera".to_owned(), |r| format!("{:.1} px", r.length()));
+            let words = RichText::new(words);
+            let warning = ui.visuals().warn_fg_color;
+            let words = if is_misclick { words.color(warning) } else { words.weak() };
+            ui.label(words).on_hover_text("From where the pin is to where the pose has its point");
+            if is_misclick {
+                let tooltip =
+                    "The other pins contradict this one, so it was left out: look at it again, or remove it";
+                ui.label(RichText::new("misplaced?").small().color(warning)).on_hover_text(tooltip);
+            }
+        });
+    });
+}
+
+fn advice(ui: &mut Ui, report: &PinReport) {
+    for advice in &report.advice {
+        note(ui, &advice.to_string(), false);
+    }
+}
+
+/// Another pose that the pins allow.
+fn alternative(
+    ui: &mut Ui,
+    number: usize,
+    other: &PinPose,
+    commands: &mut Vec<Command>,
+    take: impl FnOnce(crate::math::Pose) -> Command,
+) {
+    ui.horizontal(|ui| {
+        let text = format!("Other fit {}", number + 1);
+        let button = ui.button(text).on_hover_text("Take this pose instead; it is outlined in the view");
+        if button.clicked() {
+            commands.push(take(other.camera_from_object));
+        }
+        ui.label(RichText::new(format!("{:.1} px", other.rms_px)).weak());
+    });
+}
+
+/// Two lines: where it is, how it is turned; one standard deviation.
+fn sureness(ui: &mut Ui, uncertainty: &Uncertainty, is_solved: bool) {
+    let Uncertainty { depth_mm, lateral_mm, tilt_rad, roll_rad } = *uncertainty;
+    let text = format!(
+        "± {depth_mm:.1} mm depth, ± {lateral_mm:.1} mm sideways\n± {:.1}° tilt, ± {:.1}° roll",
+        tilt_rad.to_degrees(),
+        roll_rad.to_degrees()
+    );
+    let of = if is_solved { "this pose" } else { "the pose that the pins give" };
+    ui.label(RichText::new(text).small()).on_hover_text(format!(
+        "How sure {of} is: one standard deviation, from how well the pins agree, with a click's 1.5 px. \
+         The focal length and the mesh's size are taken as exact: 1 % of either is 1 % of depth"
+    ));
+}
+
+fn actions(ui: &mut Ui, session: &Session, report: &PinReport, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::new(4.0, 4.0);
+        let mut offer = |ui: &mut Ui, id: CommandId, text: &str| {
+            if command_button(ui, egui::Button::new(text), id.info(), session) {
+                commands.push(Command::Run(id));
+            }
+        };
+        if !report.is_solved {
+            offer(ui, CommandId::SolvePins, "Pose from pins");
+        }
+        offer(ui, CommandId::CopyPinsToNext, "To next photo");
+        offer(ui, CommandId::ExportPins, "Save");
+    });
+}
