@@ -183,7 +183,10 @@ impl PinPose {
             scene_viewport: rect_of(self.ui_state.scene_viewport),
             arrangement: self.session.panes().arrangement.name(),
             panels: !self.ui_state.panels_hidden,
-            busy: self.loading.is_busy() || self.datasets.is_busy() || self.scenes.is_switching(),
+            busy: self.loading.is_busy()
+                || self.datasets.is_busy()
+                || self.scenes.is_switching()
+                || self.snapping.is_busy(),
             saved: self.autosave.state(&self.session) == Saving::Saved,
             question: question.or_else(|| self.datasets.asks().then_some("data_set")),
             notices: self.ui_state.toasts.texts().map(str::to_owned).collect(),

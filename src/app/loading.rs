@@ -1,6 +1,7 @@
 //! Files on their way in: read, recognised, parsed on another thread, and given to the session together.
 
 mod into_session;
+mod side_jobs;
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
@@ -13,6 +14,7 @@ use crate::formats::{
     Archive, Document, FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify,
     parse_text_or_archive, with_companions,
 };
+use crate::mesh::Mesh;
 use crate::photo::{DepthPixels, Pixels, is_depth_like};
 use crate::platform::{self, FileBytes, PageReply, Saved, SavedAsset};
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
@@ -43,6 +45,8 @@ pub struct Loading {
     /// Depth maps of the scene that are decoded to be shown.
     depth_jobs: HashMap<u64, Sha256>,
     finished_depths: Vec<(Sha256, Option<Arc<DepthPixels>>)>,
+    solver_mesh_jobs: HashMap<u64, Sha256>,
+    finished_solver_meshes: Vec<(Sha256, Option<Arc<Mesh>>)>,
     /// Zips that are no workspaces.
     archives: Vec<FoundArchive>,
 }
@@ -123,6 +127,8 @@ impl Loading {
             finished_thumbnails: Vec::new(),
             depth_jobs: HashMap::new(),
             finished_depths: Vec::new(),
+            solver_mesh_jobs: HashMap::new(),
+            finished_solver_meshes: Vec::new(),
             archives: Vec::new(),
         }
     }
@@ -221,41 +227,8 @@ impl Loading {
         }
     }
 
-    /// Decodes a photo of the scene that is to be shown.
-    pub fn decode(&mut self, photo: &PhotoAsset) {
-        self.jobs.submit(JobKind::Photo, file_of(photo), &[], Urgency::Next);
-    }
-
-    /// Decodes a photo that may be shown soon.
-    pub fn decode_ahead(&mut self, photo: &PhotoAsset) {
-        self.jobs.submit(JobKind::Photo, file_of(photo), &[], Urgency::InTurn);
-    }
-
-    pub fn make_thumbnail(&mut self, photo: &PhotoAsset) {
-        let job = self.jobs.submit(JobKind::Thumbnail, file_of(photo), &[], Urgency::InTurn);
-        self.thumbnails.insert(job, photo.sha256);
-    }
-
-    /// Decodes a depth map of the scene that is to be shown.
-    pub fn decode_depth(&mut self, depth: &PhotoAsset) {
-        let job = self.jobs.submit(JobKind::DepthMap, file_of(depth), &[], Urgency::Next);
-        self.depth_jobs.insert(job, depth.sha256);
-    }
-
     pub fn take_archives(&mut self) -> Vec<FoundArchive> {
         std::mem::take(&mut self.archives)
-    }
-
-    pub fn is_worker_idle(&self) -> bool {
-        self.jobs.is_idle()
-    }
-
-    pub fn take_thumbnails(&mut self) -> Vec<(Sha256, Option<Pixels>)> {
-        std::mem::take(&mut self.finished_thumbnails)
-    }
-
-    pub fn take_depth_maps(&mut self) -> Vec<(Sha256, Option<Arc<DepthPixels>>)> {
-        std::mem::take(&mut self.finished_depths)
     }
 
     fn start(&mut self, arrival: Arrival) {
@@ -377,16 +350,7 @@ impl Loading {
         }
         let mut decoded = Vec::new();
         for (job, file, done) in self.jobs.poll() {
-            if let Some(sha256) = self.thumbnails.remove(&job) {
-                let made = if let Ok(Done::Thumbnail(pixels)) = done { Some(pixels) } else { None };
-                self.finished_thumbnails.push((sha256, made));
-                continue;
-            }
-            if let Some(sha256) = self.depth_jobs.remove(&job) {
-                let read = if let Ok(Done::DepthMap(_, depth)) = done { Some(depth) } else { None };
-                self.finished_depths.push((sha256, read));
-                continue;
-            }
+            let Some(done) = self.take_side_job(job, done) else { continue };
             match &done {
                 Ok(Done::Photo(asset, pixels)) => decoded.push((asset.sha256, pixels.clone())),
                 Ok(Done::DepthMap(asset, depth)) => {
@@ -428,10 +392,6 @@ fn dataset_archive(file: &NamedFile) -> Option<Archive> {
     (!archive.is_workspace()).then_some(archive)
 }
 
-fn file_of(photo: &PhotoAsset) -> NamedFile {
-    NamedFile { name: photo.file_name.clone(), bytes: photo.bytes.clone() }
-}
-
 fn is_grey(pixels: &Pixels) -> bool {
     pixels.rgba.chunks_exact(4).all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2])
 }
@@ -465,7 +425,7 @@ impl Load {
             Ok(Done::DepthMap(asset, _)) if self.opening.is_some() => self.batch.photos.push(asset),
             Ok(Done::DepthMap(asset, _)) => self.likely_depths.push(asset),
             // These are of no load.
-            Ok(Done::Thumbnail(_) | Done::Headers(_)) => return,
+            Ok(Done::Thumbnail(_) | Done::Headers(_) | Done::SolverMesh(_)) => return,
             Ok(Done::Mesh(asset, warnings)) => {
                 self.warnings.extend(warnings.into_iter().map(|warning| format!("{}: {warning}", file.name)));
                 self.batch.meshes.push(asset);

@@ -18,6 +18,7 @@ mod performance;
 mod photo_cache;
 mod pictures;
 mod scenes;
+mod snapping;
 mod thumbnails;
 mod widgets;
 
@@ -51,6 +52,7 @@ pub struct PinPose {
     mask_layer: mask_layer::MaskLayer,
     depth_maps: depth_maps::DepthMaps,
     exporting: exporting::Exporting,
+    snapping: snapping::Snapping,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
@@ -98,6 +100,7 @@ impl PinPose {
             mask_layer: mask_layer::MaskLayer::default(),
             depth_maps: depth_maps::DepthMaps::default(),
             exporting: exporting::Exporting::default(),
+            snapping: snapping::Snapping::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
@@ -144,6 +147,7 @@ impl eframe::App for PinPose {
         self.want_thumbnails();
         self.make_pictures(ctx);
         self.tick_export();
+        self.tick_snap();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
@@ -154,7 +158,7 @@ impl eframe::App for PinPose {
         let open_scene = self.autosave.id();
         let opening = || ui::Busy { text: "Opening…".to_owned(), can_cancel: false };
         let busy = self.loading.busy(platform::now_ms()).or_else(|| self.datasets.busy());
-        let busy = busy.or_else(|| self.exporting.busy());
+        let busy = busy.or_else(|| self.exporting.busy()).or_else(|| self.snapping.busy());
         let busy = busy.or_else(|| self.scenes.is_opening().then(opening));
         let around = ui::Surroundings {
             hands: &self.hands,
@@ -162,6 +166,7 @@ impl eframe::App for PinPose {
             pixels,
             masks: self.mask_layer.pixels(),
             depth,
+            drawn_pose: self.snapping.drawn_pose(ui.ctx().input(|input| input.time)),
             saving: self.autosave.state(&self.session),
             busy,
             scenes: self.scenes.list(),
@@ -230,6 +235,8 @@ impl PinPose {
             self.notify(Notice::info("Cancelled: nothing was opened"));
         } else if self.exporting.cancel() {
             self.notify(Notice::info("Cancelled: nothing more is exported"));
+        } else {
+            self.snapping.cancel();
         }
     }
 }

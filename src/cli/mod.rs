@@ -6,6 +6,7 @@ mod inspect;
 mod open;
 mod pins;
 mod render;
+mod snap;
 mod source;
 
 use std::ffi::OsString;
@@ -28,6 +29,8 @@ pinpose evaluate --truth T POSES… [--json | --csv]
         how far poses are from the truth: rotation, translation, ADD, ADI, AD, MSSD, MSPD, projection, VSD, CUS;
         --truth may come several times; photos and meshes are given with either
 pinpose pins FILE                    2D-3D pairs and a camera (JSON) to a pose, residuals and covariance
+pinpose snap IN… [--photo NAME]… [--out POSES.json] [--json]
+        refine every pose to its photo; scores, poses and covariances
 pinpose --help | --version
 ";
 
@@ -69,6 +72,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
             Some("evaluate") => evaluate::run(parser),
             Some("pins") => pins::run(parser),
             Some("render") => render::run(parser),
+            Some("snap") => snap::run(parser),
             _ => Err(Failure::Usage(format!("there is no verb \"{}\"", verb.to_string_lossy()))),
         },
         other => Err(other.unexpected().into()),

@@ -128,6 +128,13 @@ impl Pose {
         (rotation_vector, velocity_mm)
     }
 
+    /// A part of the way to another pose: the turn is even, the origin goes straight.
+    pub fn towards(&self, other: &Self, part: f64) -> Self {
+        let [from, to] = [self, other].map(|pose| DQuat::from_mat3(&pose.rotation).normalize());
+        let rotation = DMat3::from_quat(from.slerp(to, part));
+        Self { rotation, translation_mm: self.translation_mm.lerp(other.translation_mm, part) }
+    }
+
     /// The angle in radians between the two rotations.
     pub fn angle_to(&self, other: &Self) -> f64 {
         let relative = DQuat::from_mat3(&(self.rotation.transpose() * other.rotation)).normalize();
@@ -201,6 +208,17 @@ fn skew(v: DVec3) -> DMat3 {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn half_the_way_is_half_the_turn() {
+        let from = Pose::exp(DVec3::new(0.3, -0.2, 0.9), DVec3::ZERO);
+        let to = Pose::exp(DVec3::new(-0.1, 0.4, 1.2), DVec3::ZERO).translated(DVec3::new(4.0, -8.0, 20.0));
+        let half = from.towards(&to, 0.5);
+        assert!((half.angle_to(&from) - half.angle_to(&to)).abs() < 1e-12);
+        assert!((half.angle_to(&from) - 0.5 * from.angle_to(&to)).abs() < 1e-12);
+        assert_eq!(half.translation_mm, DVec3::new(2.0, -4.0, 10.0));
+        assert!(from.towards(&to, 1.0).angle_to(&to) < 1e-12);
+    }
+
     use glam::Vec3Swizzles;
     use proptest::prelude::*;
 

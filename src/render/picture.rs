@@ -143,6 +143,8 @@ pub struct Subject<'a> {
     /// The photo's depth map, decoded.
     pub depth: Option<Arc<DepthPixels>>,
     pub selected: Option<ObjectId>,
+    /// An object that is drawn elsewhere than it is: on its way there.
+    pub drawn_pose: Option<(ObjectId, Pose)>,
     pub look: Look,
     pub pixels_per_point: f32,
 }
@@ -157,6 +159,7 @@ impl<'a> Subject<'a> {
             masks: None,
             depth: None,
             selected: None,
+            drawn_pose: None,
             look: Look::default(),
             pixels_per_point: 1.0,
         }
@@ -171,7 +174,10 @@ pub fn picture_of(subject: &Subject<'_>) -> Option<Picture> {
     let items = scene.objects_in(photo).filter(|(object, _)| object.visible).enumerate();
     let items = items.map(|(index, (object, annotation))| Item {
         mesh: object.mesh.clone(),
-        camera_from_object: annotation.camera_from_object,
+        camera_from_object: match subject.drawn_pose {
+            Some((drawn, pose)) if drawn == object.id => pose,
+            _ => annotation.camera_from_object,
+        },
         color: object.color,
         opacity: object.opacity,
         id: item_id(index),

@@ -2,7 +2,7 @@
 
 use super::{Burst, BurstKey, Command, CommandError, Effect, Session, Snapshot};
 use crate::math::Intrinsics;
-use crate::scene::{CameraOrigin, ObjectId, PhotoId, Scene};
+use crate::scene::{CameraOrigin, ObjectId, PhotoId, PoseSource, Scene};
 
 pub(super) type Applied = Result<Vec<Effect>, CommandError>;
 
@@ -101,6 +101,11 @@ impl Session {
                 self.drag_pin((photo, object), pin, pixel, now_ms)
             }
             Command::EditPins(change) => self.edit_pins(change, now_ms),
+            Command::TakeSnap { photo, object, camera_from_object } => {
+                self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
+                self.snapped_revision = Some(self.revision);
+                Ok(Vec::new())
+            }
             Command::BeginGesture(label) => {
                 self.begin_gesture(label);
                 Ok(Vec::new())
@@ -116,6 +121,8 @@ impl Session {
                 self.half_pin = None;
                 if let Some(gesture) = self.gesture.take() {
                     self.restore(gesture.before);
+                } else if self.snapped_revision == Some(self.revision) {
+                    return Ok(self.undo());
                 }
                 Ok(Vec::new())
             }

@@ -123,6 +123,12 @@ pub enum Command {
     },
     /// Changes the selected pose's pins; the pose follows.
     EditPins(PinChange),
+    /// The pose that the photo supports best near the present one.
+    TakeSnap {
+        photo: PhotoId,
+        object: ObjectId,
+        camera_from_object: Pose,
+    },
     BeginGesture(&'static str),
     /// A pose within a gesture.
     Drag {

@@ -18,6 +18,11 @@ pub enum Effect {
     /// A picture at the photo's resolution, to be drawn and downloaded.
     ExportPicture(PictureRequest),
     CopyText(String),
+    /// Refine this pose to its photo.
+    Snap {
+        photo: PhotoId,
+        object: ObjectId,
+    },
     /// The clipboard can be read in answer to a key alone; else the user is given a field to paste into.
     AskForPose,
     AskForExport,

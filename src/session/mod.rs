@@ -52,6 +52,8 @@ pub struct Session {
     nudge: NudgeSettings,
     tool: Tool,
     half_pin: Option<HalfPin>,
+    /// After a snap, until anything else changes.
+    snapped_revision: Option<u64>,
     pin_report: pins::ReportCache,
     history: History,
     log: log::Log,

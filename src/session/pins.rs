@@ -204,6 +204,12 @@ impl Session {
         self.set_pins("Pose from pins", (photo, object), pins, now_ms)
     }
 
+    pub(super) fn ask_snap(&self) -> Applied {
+        let Some((photo, object, _)) = self.selected_annotation() else { return Ok(Vec::new()) };
+        self.check_movable((photo, object))?;
+        Ok(vec![Effect::Snap { photo, object }])
+    }
+
     pub(super) fn clear_pins(&mut self) -> Applied {
         let Some((photo, object, _)) = self.selected_annotation() else { return Ok(Vec::new()) };
         self.change("Remove all pins", |scene| {

@@ -51,6 +51,7 @@ impl Session {
             CommandId::MoveTool => self.apply(Command::SetTool(Tool::Move), now_ms),
             CommandId::RotateTool => self.apply(Command::SetTool(Tool::Rotate), now_ms),
             CommandId::PinTool => self.apply(Command::SetTool(Tool::Pin), now_ms),
+            CommandId::Snap => self.ask_snap(),
             CommandId::SolvePins => self.solve_selected(now_ms),
             CommandId::ClearPins => self.clear_pins(),
             CommandId::CopyPinsToNext => self.copy_pins_to_next(now_ms),
@@ -97,7 +98,7 @@ impl Session {
         Vec::new()
     }
 
-    fn undo(&mut self) -> Vec<Effect> {
+    pub(super) fn undo(&mut self) -> Vec<Effect> {
         self.finish_gesture();
         let present = self.snapshot();
         if let Some(before) = self.history.undo(present) {

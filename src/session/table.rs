@@ -143,6 +143,7 @@ commands![
     (ClearPins, "clear_pins", Pose, "Remove all pins", "Remove the pins of the selected object in this photo; the pose stays", None, needs_pins),
     (CopyPinsToNext, "copy_pins_to_next", Pose, "Pins to next photo", "The same points in the next photo, to be dragged to their pixels there", None, needs_pins_and_next),
     (ExportPins, "export_pins", Pose, "Save pins (JSON)", "Points, pixels and the camera, as \"pinpose pins\" reads them", None, needs_pins),
+    (Snap, "snap", Pose, "Snap", "Refine the selected object's pose to the photo: its outline, its edges, its pins", key("Space"), needs_selected_pose),
     (ConfirmAndNext, "confirm", Pose, "Confirm and next", "Confirm this photo's poses, carry them to an untouched next photo, and go there", key("Enter"), needs_objects_here),
     (Reopen, "reopen", Pose, "Reopen", "Take back the confirmation of this photo's poses", shift("Enter"), needs_confirmed),
     (ResetPose, "reset_pose", Pose, "Reset pose", "Put the selected object back to its start pose", None, needs_selected_pose),

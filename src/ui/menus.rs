@@ -82,7 +82,13 @@ pub const MENUS: [MenuPlan; 5] = [
         title: "Pose",
         groups: &[
             &[CommandId::MoveTool, CommandId::RotateTool, CommandId::PinTool],
-            &[CommandId::SolvePins, CommandId::ClearPins, CommandId::CopyPinsToNext, CommandId::ExportPins],
+            &[
+                CommandId::Snap,
+                CommandId::SolvePins,
+                CommandId::ClearPins,
+                CommandId::CopyPinsToNext,
+                CommandId::ExportPins,
+            ],
             &[CommandId::ConfirmAndNext, CommandId::Reopen],
             &[
                 CommandId::ResetPose,

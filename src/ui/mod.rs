@@ -25,7 +25,9 @@ mod welcome;
 use egui::{CentralPanel, Frame, Panel};
 
 use crate::interact::{Hands, SceneMove};
+use crate::math::Pose;
 use crate::platform::{SceneId, SceneSummary, StorageUse};
+use crate::scene::{ObjectId, PhotoId};
 use crate::session::{Command, Effect, Session};
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
@@ -113,6 +115,8 @@ pub struct Surroundings<'a> {
     pub masks: Option<std::sync::Arc<crate::photo::Pixels>>,
     /// Its depth map, once it is decoded.
     pub depth: Option<std::sync::Arc<crate::photo::DepthPixels>>,
+    /// An object that is on its way to its new pose: where it is drawn.
+    pub drawn_pose: Option<(PhotoId, ObjectId, Pose)>,
     pub saving: Saving,
     /// What is being loaded.
     pub busy: Option<Busy>,
@@ -124,6 +128,12 @@ pub struct Surroundings<'a> {
     /// The scenes that are stored, the one that was changed last first.
     pub scenes: &'a [SceneSummary],
     pub store: StoreView<'a>,
+}
+
+impl Surroundings<'_> {
+    fn drawn_pose_in(&self, shown: PhotoId) -> Option<(ObjectId, Pose)> {
+        self.drawn_pose.filter(|(photo, ..)| *photo == shown).map(|(_, object, pose)| (object, pose))
+    }
 }
 
 /// What is known of the store besides its scenes.

@@ -42,6 +42,10 @@ pub fn draw(
         ui.separator();
         tools(ui, session, &mut asked.commands);
         ui.separator();
+        if command_button(ui, Button::new(CommandId::Snap.info().text), CommandId::Snap.info(), session) {
+            asked.commands.push(Command::Run(CommandId::Snap));
+        }
+        ui.separator();
         history_button(ui, Icon::Undo, CommandId::Undo, session, &mut asked.commands);
         history_button(ui, Icon::Redo, CommandId::Redo, session, &mut asked.commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

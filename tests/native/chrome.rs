@@ -44,6 +44,7 @@ fn harness_of(session: Session, size: [f32; 2], pixels_per_point: f32) -> (Harne
         }
         let hands = Hands::default();
         let around = Surroundings {
+            drawn_pose: None,
             busy: busy.clone(),
             scenes,
             store: ui::StoreView { now_ms: NOW_MS, ..ui::StoreView::default() },

@@ -177,3 +177,25 @@ fn pins_become_a_pose_with_its_residuals_and_covariance() {
     refused(&|value| value["estimate_focal"] = Value::from(true), "six or more");
     refused(&|value| value["fx"] = Value::from(0), "focal length");
 }
+
+#[test]
+fn poses_are_snapped_to_their_photos() {
+    let Some(folder) = data_folder("linemod10") else { return };
+    let out = empty_folder("snap").join("poses.json");
+    let files = ["000019.png", "obj_000001.ply", "groud_truth.txt"].map(|name| folder.join(name));
+    let mut arguments: Vec<String> = vec!["snap".to_owned()];
+    arguments.extend(files.iter().map(|path| path.display().to_string()));
+    arguments.extend(["--json", "--out"].map(str::to_owned));
+    arguments.push(out.display().to_string());
+    let output = pinpose(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let snap = &answer["snaps"][0];
+    assert_eq!((&snap["photo"], &snap["object"]), (&"000019.png".into(), &"obj_000001".into()));
+    // From the truth there is nowhere far to go: the benchmark says how far it goes elsewhere.
+    assert!(snap["moved_mm"].as_f64().unwrap() < 30.0, "{snap:#}");
+    let written: Value = serde_json::from_slice(&std::fs::read(&out).unwrap()).unwrap();
+    assert_eq!(written["photos"][0]["poses"][0]["mesh_file"], "obj_000001.ply");
+    let nothing = pinpose(&["snap", &folder.join("000019.png").display().to_string()]);
+    assert_eq!(nothing.status.code(), Some(1));
+}

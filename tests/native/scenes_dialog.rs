@@ -53,6 +53,7 @@ fn harness(
         let usage = StorageUse { used_bytes: 12_700_000, quota_bytes: Some(2_100_000_000) };
         let hands = Hands::default();
         let around = Surroundings {
+            drawn_pose: None,
             scenes: &scenes,
             store: StoreView {
                 open_scene: scenes.first().map(|scene| &scene.id),

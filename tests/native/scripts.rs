@@ -337,6 +337,25 @@ fn a_pin_off_its_place_is_named_and_can_be_switched_off() {
 }
 
 #[test]
+fn a_snap_is_a_step_and_esc_takes_it_back_until_something_else_is_done() {
+    let mut session = small_session();
+    let effects = run(&mut session, Command::Run(CommandId::Snap));
+    assert!(matches!(effects[..], [Effect::Snap { .. }]), "{effects:?}");
+    let (photo, object, annotation) = session.selected_annotation().unwrap();
+    let start = annotation.camera_from_object;
+    let found = start.translated(DVec3::new(2.0, 0.0, -9.0));
+    run(&mut session, Command::TakeSnap { photo, object, camera_from_object: found });
+    assert_eq!(session.selected_annotation().unwrap().2.source, PoseSource::Snap);
+    run(&mut session, Command::Run(CommandId::Cancel));
+    assert_eq!(shown_pose(&session), start);
+    run(&mut session, Command::TakeSnap { photo, object, camera_from_object: found });
+    drag(&mut session, DVec3::X);
+    let end = shown_pose(&session);
+    run(&mut session, Command::Run(CommandId::Cancel));
+    assert_eq!(shown_pose(&session), end, "the snap was gone on from");
+}
+
+#[test]
 fn a_pin_of_two_halves_moves_the_object_there() {
     let mut session = small_session();
     let (photo, object, _) = session.selected_annotation().unwrap();

@@ -13,6 +13,7 @@ use pinpose::ui::{Saving, StoreView, Surroundings};
 /// What is around an interface with nothing going on: no GPU, no decoded photo, nothing stored, nothing waited for.
 pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
     Surroundings {
+        drawn_pose: None,
         hands,
         renderer: None,
         pixels: None,

@@ -3,6 +3,7 @@
 //! Requests and replies cross as bytes, for a page's worker shares no memory with it; natively the same bytes go to a
 //! thread, so that one path is tested.
 
+mod solver_mesh;
 mod wire;
 
 use std::collections::{HashMap, VecDeque};
@@ -30,6 +31,8 @@ pub enum JobKind {
     DepthMap,
     /// Of a file and all of its companions, which are images as it is: sizes and hashes, nothing decoded.
     Headers,
+    /// Of a mesh's file.
+    SolverMesh,
 }
 
 impl JobKind {
@@ -40,6 +43,7 @@ impl JobKind {
             Self::Thumbnail => 2,
             Self::DepthMap => 3,
             Self::Headers => 4,
+            Self::SolverMesh => 5,
         }
     }
 }
@@ -60,6 +64,7 @@ pub enum Done {
     DepthMap(Arc<PhotoAsset>, Arc<DepthPixels>),
     /// In the order of the files; an error names its file.
     Headers(Vec<Result<Arc<PhotoAsset>, String>>),
+    SolverMesh(Arc<Mesh>),
 }
 
 /// What is asked of the worker.
@@ -200,6 +205,7 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
             .map(|depth| write_depth(&file, &depth))
             .map_err(|error| error.to_string()),
         4 => Ok(write_headers(std::iter::once(&file).chain(&companions))),
+        5 => solver_mesh::write(&file, &companions),
         _ => read_mesh_with(&file, &companions)
             .map(|(asset, warnings)| write_mesh(&asset, &warnings))
             .map_err(|error| error.to_string()),
@@ -219,6 +225,9 @@ fn read_reply(
         Some(1) if kind == JobKind::DepthMap => read_depth_reply(file, &mut reader),
         Some(1) if kind == JobKind::Headers => {
             read_headers(std::iter::once(file).chain(companions), &mut reader).map(Done::Headers)
+        }
+        Some(1) if kind == JobKind::SolverMesh => {
+            solver_mesh::read(&mut reader).map(|mesh| Done::SolverMesh(Arc::new(mesh)))
         }
         Some(1) => read_mesh_reply(file, companions, &mut reader),
         _ => {

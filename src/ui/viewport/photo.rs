@@ -31,6 +31,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         look: session.look(),
         pixels_per_point,
         masks: around.masks.clone(),
+        drawn_pose: around.drawn_pose_in(photo.id),
         depth: around.depth.clone(),
         ..Subject::new(session.scene(), photo.id, around.pixels.clone())
     };

@@ -51,6 +51,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         look,
         pixels_per_point,
         masks: around.masks.clone(),
+        drawn_pose: around.drawn_pose_in(photo.id),
         ..Subject::new(session.scene(), photo.id, around.pixels.clone())
     };
     let view = &around.hands.scene_view;

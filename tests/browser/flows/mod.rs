@@ -71,6 +71,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGPU, "expert", expert::three_samples),
     Flow::on(BOTH, "expert-all", expert::all_samples).long(),
     Flow::on(WEBGPU, "pins", annotator::pins),
+    Flow::on(WEBGPU, "pins-and-snap", annotator::pins_and_snap).long(),
     Flow::on(WEBGL, "dataset-folder", datasets::folder),
     Flow::on(WEBGL, "dataset-zip", datasets::zip),
     Flow::on(WEBGL, "dataset-thousand", datasets::thousand_frames).long(),

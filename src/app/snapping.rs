@@ -1,0 +1,200 @@
+//! Snap: the selected object's pose refined to the photo, a slice a frame.
+
+use std::sync::Arc;
+
+use glam::DAffine3;
+
+use super::PinPose;
+use crate::math::Pose;
+use crate::mesh::Mesh;
+use crate::platform;
+use crate::scene::{ObjectId, PhotoId, Sha256};
+use crate::session::{Command, Notice};
+use crate::solve::contour::ContourModel;
+use crate::solve::snap::{Progress, Snap, SnapHints, SnapOutcome, SnapVerdict};
+use crate::ui::Busy;
+
+/// Of each frame, for the solver.
+const SLICE_MS: f64 = 8.0;
+/// The picture goes from the pose before to the one after in this time.
+const ANIMATION_S: f64 = 0.25;
+
+#[derive(Default)]
+pub struct Snapping {
+    /// Meshes for the solvers, as they are in their files.
+    meshes: Vec<(Sha256, Option<Arc<Mesh>>)>,
+    /// Meshes that are being made.
+    wanted: Vec<Sha256>,
+    /// Waits for meshes and pixels.
+    asked: Option<Asked>,
+    running: Option<(Asked, Box<Snap>, f64)>,
+    animation: Option<Animation>,
+}
+
+/// Whose pose is to be refined, from where.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    photo: PhotoId,
+    object: ObjectId,
+    start: Pose,
+}
+
+/// The way from one pose to another, seen.
+#[derive(Debug, Clone, Copy)]
+struct Animation {
+    photo: PhotoId,
+    object: ObjectId,
+    from: Pose,
+    to: Pose,
+    began_s: f64,
+}
+
+impl Snapping {
+    pub fn is_busy(&self) -> bool {
+        self.asked.is_some() || self.running.is_some()
+    }
+
+    pub fn busy(&self) -> Option<Busy> {
+        let text = match (&self.asked, &self.running) {
+            (Some(_), _) => "Preparing to snap…".to_owned(),
+            (None, Some((_, _, part))) => format!("Snapping… {:.0} %", part * 100.0),
+            (None, None) => return None,
+        };
+        Some(Busy { text, can_cancel: true })
+    }
+
+    /// Stops what is under way; false if nothing is.
+    pub fn cancel(&mut self) -> bool {
+        self.asked.take().is_some() | self.running.take().is_some()
+    }
+
+    /// Where an object is drawn while it is on its way to its new pose.
+    pub fn drawn_pose(&self, now_s: f64) -> Option<(PhotoId, ObjectId, Pose)> {
+        let Animation { photo, object, from, to, began_s } = self.animation?;
+        let part = ((now_s - began_s) / ANIMATION_S).clamp(0.0, 1.0);
+        let eased = part * part * (3.0 - 2.0 * part);
+        Some((photo, object, from.towards(&to, eased)))
+    }
+}
+
+impl PinPose {
+    pub(super) fn start_snap(&mut self, photo: PhotoId, object: ObjectId) {
+        let start = self.session.scene().annotation(photo, object);
+        let Some(start) = start.map(|annotation| annotation.camera_from_object) else { return };
+        self.snapping.cancel();
+        self.snapping.asked = Some(Asked { photo, object, start });
+        self.ctx.request_repaint();
+    }
+
+    /// Once a frame: what is missing is sent for; then the solver works for its slice.
+    pub(super) fn tick_snap(&mut self) {
+        for (sha256, mesh) in self.loading.take_solver_meshes() {
+            self.snapping.wanted.retain(|wanted| *wanted != sha256);
+            self.snapping.meshes.push((sha256, mesh));
+        }
+        if let Some(asked) = self.snapping.asked {
+            self.prepare_snap(asked);
+        }
+        if let Some((asked, mut snap, _)) = self.snapping.running.take() {
+            let until_ms = platform::now_ms() + SLICE_MS;
+            match snap.step(&mut || platform::now_ms() < until_ms) {
+                Progress::Working(part) => self.snapping.running = Some((asked, snap, part)),
+                Progress::Done(outcome) => self.finish_snap(asked, &outcome),
+            }
+            self.ctx.request_repaint();
+        }
+        let now_s = self.ctx.input(|input| input.time);
+        if let Some(animation) = &self.snapping.animation {
+            if now_s - animation.began_s < ANIMATION_S {
+                self.ctx.request_repaint();
+            } else {
+                self.snapping.animation = None;
+            }
+        }
+    }
+
+    /// Begins once photo and meshes are there.
+    fn prepare_snap(&mut self, asked: Asked) {
+        let Some(photo) = self.session.scene().photo(asked.photo) else {
+            self.snapping.asked = None;
+            return;
+        };
+        let (camera, pixels) = (photo.camera, self.photos.get(photo.asset.sha256));
+        let mut models = Vec::new();
+        let mut is_complete = true;
+        let here: Vec<(ObjectId, Pose)> = (self.session.scene().objects_in(asked.photo))
+            .map(|(object, annotation)| (object.id, annotation.camera_from_object))
+            .collect();
+        for (object, pose) in here {
+            match self.contour_model(object) {
+                Wanted::There(model) => models.push((object, pose, model)),
+                Wanted::OnItsWay => is_complete = false,
+                Wanted::Impossible if object == asked.object => {
+                    self.snapping.asked = None;
+                    self.notify(Notice::error("This mesh has no surface to snap to the photo"));
+                    return;
+                }
+                Wanted::Impossible => {}
+            }
+        }
+        let (Some(pixels), true) = (pixels, is_complete) else { return };
+        self.snapping.asked = None;
+        let Some(position) = models.iter().position(|(object, ..)| *object == asked.object) else { return };
+        let (_, _, model) = models.remove(position);
+        let annotation = self.session.scene().annotation(asked.photo, asked.object);
+        let hints = SnapHints {
+            pins: annotation.map_or_else(Vec::new, |annotation| annotation.pins.clone()),
+            occluders: models.into_iter().map(|(_, pose, model)| (model, pose)).collect(),
+        };
+        let snap = Snap::new(&pixels, &camera, model, &asked.start, hints);
+        self.snapping.running = Some((asked, Box::new(snap), 0.0));
+    }
+
+    fn contour_model(&mut self, object: ObjectId) -> Wanted {
+        let Some(object) = self.session.scene().object(object) else { return Wanted::Impossible };
+        let sha256 = object.mesh.sha256;
+        let known = self.snapping.meshes.iter().find(|(known, _)| *known == sha256);
+        let Some((_, mesh)) = known else {
+            if !self.snapping.wanted.contains(&sha256) {
+                self.snapping.wanted.push(sha256);
+                self.loading.prepare_for_solvers(&object.mesh);
+            }
+            return Wanted::OnItsWay;
+        };
+        let transform = DAffine3::from_mat4(object.mesh_from_file);
+        let framed = mesh.as_ref().and_then(|mesh| mesh.transformed(&transform).ok());
+        let model = framed.and_then(|mesh| ContourModel::new(&mesh));
+        model.map_or(Wanted::Impossible, |model| Wanted::There(Arc::new(model)))
+    }
+
+    fn finish_snap(&mut self, asked: Asked, outcome: &SnapOutcome) {
+        let Asked { photo, object, start } = asked;
+        let present = self.session.scene().annotation(photo, object);
+        // Somebody has gone on by hand.
+        if present.is_none_or(|annotation| annotation.camera_from_object != start) {
+            return;
+        }
+        if outcome.verdict != SnapVerdict::Improved {
+            self.notify(Notice::warning(outcome.verdict.to_string()));
+            return;
+        }
+        let camera_from_object = outcome.camera_from_object;
+        self.apply(Command::TakeSnap { photo, object, camera_from_object });
+        let began_s = self.ctx.input(|input| input.time);
+        self.snapping.animation =
+            Some(Animation { photo, object, from: start, to: camera_from_object, began_s });
+        self.notify(Notice::info(format!(
+            "Snapped: turned {:.1}°, moved {:.1} mm; fit {:.0} % to {:.0} %. Esc takes it back",
+            outcome.turned_rad.to_degrees(),
+            outcome.moved_mm,
+            100.0 * outcome.score_before,
+            100.0 * outcome.score_after
+        )));
+    }
+}
+
+enum Wanted {
+    There(Arc<ContourModel>),
+    OnItsWay,
+    Impossible,
+}

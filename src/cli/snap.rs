@@ -1,0 +1,161 @@
+//! `pinpose snap IN…`: every pose refined to its photo, from where it is.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::{Failure, Outcome, open};
+use crate::formats::{Keep, write_document};
+use crate::photo::{Pixels, decode};
+use crate::platform;
+use crate::scene::{Annotation, AnnotationState, Object, ObjectId, Photo, PoseSource, Scene};
+use crate::session::{Command, Session};
+use crate::solve::contour::ContourModel;
+use crate::solve::snap::{Snap, SnapHints, SnapOutcome, SnapVerdict};
+
+struct Options {
+    paths: Vec<PathBuf>,
+    out: Option<PathBuf>,
+    /// Names of photos; empty for all.
+    photos: Vec<String>,
+    as_json: bool,
+}
+
+pub fn run(parser: lexopt::Parser) -> Outcome {
+    let options = read_options(parser)?;
+    let mut session = open::open_session(&options.paths)?;
+    let is_wanted = |photo: &&Photo| options.photos.is_empty() || options.photos.contains(&photo.name);
+    let scene = session.scene().clone();
+    let photos: Vec<&Photo> = scene.photos.iter().filter(is_wanted).collect();
+    if photos.is_empty() {
+        return Err(Failure::Input(vec!["there is no such photo".to_owned()]));
+    }
+    let models: Vec<(ObjectId, Option<Arc<ContourModel>>)> = scene
+        .objects
+        .iter()
+        .map(|object| (object.id, ContourModel::new(&object.mesh.mesh).map(Arc::new)))
+        .collect();
+    let mut lines = Vec::new();
+    for photo in photos {
+        let pixels = decode(&photo.asset.bytes)
+            .map_err(|error| Failure::Input(vec![format!("{}: {error}", photo.asset.file_name)]))?
+            .pixels;
+        for (object, annotation) in scene.objects_in(photo.id) {
+            if annotation.state == AnnotationState::Untouched {
+                continue;
+            }
+            let outcome = snap(&scene, photo, &pixels, object, annotation, &models);
+            if let Some(outcome) = &outcome {
+                take(&mut session, photo, object, outcome)?;
+            }
+            lines.push(describe(photo, object, outcome.as_ref()));
+        }
+    }
+    if lines.is_empty() {
+        return Err(Failure::Input(vec!["there is no pose to begin with".to_owned()]));
+    }
+    if let Some(out) = &options.out {
+        let text = write_document(&session.document(Keep::Annotated));
+        std::fs::write(out, text)
+            .map_err(|error| Failure::Input(vec![format!("{}: {error}", out.display())]))?;
+    }
+    if options.as_json {
+        println!("{:#}", json!({ "snaps": lines }));
+    } else {
+        lines.iter().for_each(|line| println!("{}", line_of(line)));
+    }
+    Ok(())
+}
+
+/// `None` for a mesh without a surface.
+fn snap(
+    scene: &Scene,
+    photo: &Photo,
+    pixels: &Pixels,
+    object: &Object,
+    annotation: &Annotation,
+    models: &[(ObjectId, Option<Arc<ContourModel>>)],
+) -> Option<SnapOutcome> {
+    let model_of =
+        |id: ObjectId| models.iter().find(|(known, _)| *known == id).and_then(|(_, model)| model.clone());
+    let others = scene.objects_in(photo.id).filter(|(other, _)| other.id != object.id);
+    let occluders = others
+        .filter(|(_, annotation)| annotation.state != AnnotationState::Untouched)
+        .filter_map(|(other, annotation)| Some((model_of(other.id)?, annotation.camera_from_object)));
+    let hints = SnapHints { pins: annotation.pins.clone(), occluders: occluders.collect() };
+    let model = model_of(object.id)?;
+    Some(Snap::new(pixels, &photo.camera, model, &annotation.camera_from_object, hints).run())
+}
+
+fn take(session: &mut Session, photo: &Photo, object: &Object, outcome: &SnapOutcome) -> Outcome {
+    if outcome.verdict != SnapVerdict::Improved {
+        return Ok(());
+    }
+    let command = Command::SetPose {
+        photo: photo.id,
+        object: object.id,
+        camera_from_object: outcome.camera_from_object,
+        source: PoseSource::Snap,
+    };
+    // A locked or confirmed pose stays, and that is said.
+    session
+        .apply(command, platform::now_ms())
+        .map(drop)
+        .map_err(|error| Failure::Input(vec![format!("{}: {error}", photo.name)]))
+}
+
+fn describe(photo: &Photo, object: &Object, outcome: Option<&SnapOutcome>) -> Value {
+    let Some(outcome) = outcome else {
+        return json!({ "photo": photo.name, "object": object.name, "verdict": "The mesh has no surface." });
+    };
+    json!({
+        "photo": photo.name,
+        "object": object.name,
+        "improved": outcome.verdict == SnapVerdict::Improved,
+        "verdict": outcome.verdict.to_string(),
+        "score_before": outcome.score_before,
+        "score_after": outcome.score_after,
+        "turned_degrees": outcome.turned_rad.to_degrees(),
+        "moved_mm": outcome.moved_mm,
+        "camera_from_object": outcome.camera_from_object.to_rows(),
+        "covariance": outcome.covariance.map(|covariance| covariance.0),
+        "covariance_of": "the left twist (wx wy wz in radians, vx vy vz in mm), true pose = exp(twist) * pose",
+    })
+}
+
+fn line_of(line: &Value) -> String {
+    let text = |key: &str| line[key].as_str().unwrap_or_default().to_owned();
+    let number = |key: &str| line[key].as_f64().unwrap_or_default();
+    let what = if line["improved"] == true {
+        format!(
+            "turned {:.1} degrees, moved {:.1} mm, score {:.2} to {:.2}",
+            number("turned_degrees"),
+            number("moved_mm"),
+            number("score_before"),
+            number("score_after")
+        )
+    } else {
+        text("verdict")
+    };
+    format!("{}  {}  {what}", text("photo"), text("object"))
+}
+
+fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
+    let mut options = Options { paths: Vec::new(), out: None, photos: Vec::new(), as_json: false };
+    while let Some(argument) = parser.next()? {
+        match argument {
+            lexopt::Arg::Long("out") => options.out = Some(PathBuf::from(parser.value()?)),
+            lexopt::Arg::Long("json") => options.as_json = true,
+            lexopt::Arg::Long("photo") => {
+                options.photos.push(parser.value()?.to_string_lossy().into_owned());
+            }
+            lexopt::Arg::Value(path) => options.paths.push(path.into()),
+            other => return Err(other.unexpected().into()),
+        }
+    }
+    if options.paths.is_empty() {
+        return Err(Failure::Usage("snap needs photos, meshes and poses".to_owned()));
+    }
+    Ok(options)
+}
