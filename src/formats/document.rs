@@ -112,6 +112,7 @@ fn is_one(value: &f32) -> bool {
 enum CameraOriginEntry {
     AssumedFieldOfView,
     Exif,
+    Pins { relative_sigma: f64 },
     Typed,
     File { name: String },
 }

@@ -63,13 +63,17 @@ pub enum CameraOrigin {
     AssumedFieldOfView,
     /// The 35 mm equivalent focal length in the photo's EXIF data.
     Exif,
+    /// The focal length that fits the pins; one standard deviation of it, as a part of it.
+    Pins {
+        relative_sigma: f64,
+    },
     Typed,
     File(String),
 }
 
 impl CameraOrigin {
     pub fn is_guess(&self) -> bool {
-        matches!(self, Self::AssumedFieldOfView | Self::Exif)
+        matches!(self, Self::AssumedFieldOfView | Self::Exif | Self::Pins { .. })
     }
 }
 

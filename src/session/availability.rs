@@ -42,6 +42,16 @@ pub fn needs_pins(session: &Session) -> Reason {
     (!has_pins).then_some("the selected object has no pins in this photo")
 }
 
+pub fn needs_six_pins(session: &Session) -> Reason {
+    let pulling = session
+        .selected_annotation()
+        .map_or(0, |(_, _, annotation)| annotation.pins.iter().filter(|pin| pin.counts()).count());
+    let is_locked = session.photo().is_some_and(|photo| photo.locked);
+    (pulling < 6)
+        .then_some("six pins are needed, not all in one plane")
+        .or(is_locked.then_some("the camera is locked"))
+}
+
 pub fn needs_pins_and_next(session: &Session) -> Reason {
     let shown = session.photo().map(|photo| photo.id);
     let is_last = session.scene().photos.last().map(|photo| photo.id) == shown;

@@ -11,9 +11,11 @@ use super::{CommandError, Effect, Notice, PinChange, Session};
 use crate::formats::export::safe_file_name;
 use crate::formats::write_pins;
 use crate::math::Pose;
-use crate::scene::{Annotation, AnnotationState, ObjectId, PhotoId, Pin, PoseSource, file_stem};
+use crate::scene::{
+    Annotation, AnnotationState, CameraOrigin, ObjectId, PhotoId, Pin, PoseSource, file_stem,
+};
 use crate::solve::Uncertainty;
-use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_pins};
+use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
 
 /// A pose's place: one object in one photo.
 type Target = (PhotoId, ObjectId);
@@ -202,6 +204,27 @@ impl Session {
         self.check_movable((photo, object))?;
         self.solution((photo, object), &pins, &annotation.camera_from_object)?;
         self.set_pins("Pose from pins", (photo, object), pins, now_ms)
+    }
+
+    /// The focal length that fits the pins best, and the pose with it, as one step.
+    pub(super) fn focal_from_pins(&mut self, now_ms: f64) -> Applied {
+        let Some((photo, object, annotation)) = self.selected_annotation() else { return Ok(Vec::new()) };
+        let pins = annotation.pins.clone();
+        self.check_movable((photo, object))?;
+        let camera = self.scene.photo(photo).ok_or(CommandError::NoPhoto(photo))?.camera;
+        let found = solve_focal(&camera, &pins, &PinOptions::default())
+            .map_err(|error| CommandError::Failed(format!("The pins give no focal length: {error}")))?;
+        let before = self.snapshot();
+        let origin = CameraOrigin::Pins { relative_sigma: found.relative_sigma };
+        self.scene.set_camera(photo, found.camera, origin);
+        self.write_poses(vec![((photo, object), found.camera_from_object)], PoseSource::Pins, now_ms);
+        self.record_changes(&before.scene, "Focal length from pins");
+        self.history.push("Focal length from pins", before);
+        Ok(vec![Effect::Notify(Notice::info(format!(
+            "fx = {:.0} px, ± {:.1} %: as many per cent the distance is unsure",
+            found.camera.fx,
+            100.0 * found.relative_sigma
+        )))])
     }
 
     pub(super) fn ask_snap(&self) -> Applied {

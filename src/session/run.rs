@@ -53,6 +53,7 @@ impl Session {
             CommandId::PinTool => self.apply(Command::SetTool(Tool::Pin), now_ms),
             CommandId::Snap => self.ask_snap(),
             CommandId::SolvePins => self.solve_selected(now_ms),
+            CommandId::FocalFromPins => self.focal_from_pins(now_ms),
             CommandId::ClearPins => self.clear_pins(),
             CommandId::CopyPinsToNext => self.copy_pins_to_next(now_ms),
             CommandId::ExportPins => self.export_pins(),

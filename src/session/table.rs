@@ -141,6 +141,7 @@ commands![
     (PinTool, "pin_tool", Pose, "Pin", "Click a point of the object, then drag the pin to where that point is in the photo", key("X"), always),
     (SolvePins, "solve_pins", Pose, "Pose from pins", "The pose that brings the pins to their pixels", shift("X"), needs_pins),
     (ClearPins, "clear_pins", Pose, "Remove all pins", "Remove the pins of the selected object in this photo; the pose stays", None, needs_pins),
+    (FocalFromPins, "focal_from_pins", Pose, "Focal length from pins", "The focal length and the pose that fit six pins or more", None, needs_six_pins),
     (CopyPinsToNext, "copy_pins_to_next", Pose, "Pins to next photo", "The same points in the next photo, to be dragged to their pixels there", None, needs_pins_and_next),
     (ExportPins, "export_pins", Pose, "Save pins (JSON)", "Points, pixels and the camera, as \"pinpose pins\" reads them", None, needs_pins),
     (Snap, "snap", Pose, "Snap", "Refine the selected object's pose to the photo: its outline, its edges, its pins", key("Space"), needs_selected_pose),

@@ -85,6 +85,7 @@ pub const MENUS: [MenuPlan; 5] = [
             &[
                 CommandId::Snap,
                 CommandId::SolvePins,
+                CommandId::FocalFromPins,
                 CommandId::ClearPins,
                 CommandId::CopyPinsToNext,
                 CommandId::ExportPins,

@@ -221,6 +221,7 @@ fn every_command_of_the_table_does_something() {
                 run(&mut session, Command::Select(None));
             }
             CommandId::SolvePins
+            | CommandId::FocalFromPins
             | CommandId::ClearPins
             | CommandId::CopyPinsToNext
             | CommandId::ExportPins => {
@@ -251,6 +252,7 @@ fn set_pins(session: &mut Session, camera_from_object: &Pose) {
         [-40.0, 30.0, -20.0],
         [-40.0, -30.0, 20.0],
         [40.0, 30.0, 20.0],
+        [40.0, -30.0, 20.0],
     ];
     for corner in corners.map(DVec3::from_array) {
         let pixel = camera.project(camera_from_object.transform_point(corner)).unwrap();
@@ -333,7 +335,28 @@ fn a_pin_off_its_place_is_named_and_can_be_switched_off() {
     assert!(report.residuals_px[4].unwrap().length() > 40.0, "it keeps its residual");
     assert!(shown_pose(&session).translation_mm.distance(target.translation_mm) < 1e-3);
     run(&mut session, Command::EditPins(PinChange::Remove(4)));
-    assert_eq!(session.selected_annotation().unwrap().2.pins.len(), 4);
+    assert_eq!(session.selected_annotation().unwrap().2.pins.len(), 5);
+}
+
+#[test]
+fn six_pins_give_the_focal_length_too() {
+    let mut session = small_session();
+    // Near, so that perspective tells the focal length from the distance.
+    let target =
+        Pose::exp(DVec3::new(0.3, -0.5, 0.2), DVec3::ZERO) * Pose::from_translation(DVec3::Z * 220.0);
+    set_pins(&mut session, &target);
+    let photo = session.photo().unwrap();
+    let (id, truth) = (photo.id, photo.camera);
+    let camera = Intrinsics { fx: truth.fx * 1.3, fy: truth.fy * 1.3, ..truth };
+    run(&mut session, Command::SetCamera { photo: id, camera, origin: CameraOrigin::Typed });
+    run(&mut session, Command::Run(CommandId::FocalFromPins));
+    let photo = session.photo().unwrap();
+    // Exact pixels: what is left is where the solver stops.
+    assert!((photo.camera.fx / truth.fx - 1.0).abs() < 1e-4, "{}", photo.camera.fx);
+    assert!(matches!(photo.camera_origin, CameraOrigin::Pins { .. }) && photo.camera_origin.is_guess());
+    assert!(shown_pose(&session).translation_mm.distance(target.translation_mm) < 0.1);
+    run(&mut session, Command::Run(CommandId::Undo));
+    assert_eq!(session.photo().unwrap().camera, camera);
 }
 
 #[test]

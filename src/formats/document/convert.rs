@@ -418,6 +418,7 @@ impl From<CameraOrigin> for CameraOriginEntry {
         match origin {
             CameraOrigin::AssumedFieldOfView => Self::AssumedFieldOfView,
             CameraOrigin::Exif => Self::Exif,
+            CameraOrigin::Pins { relative_sigma } => Self::Pins { relative_sigma },
             CameraOrigin::Typed => Self::Typed,
             CameraOrigin::File(name) => Self::File { name },
         }
@@ -429,6 +430,7 @@ impl From<CameraOriginEntry> for CameraOrigin {
         match entry {
             CameraOriginEntry::AssumedFieldOfView => Self::AssumedFieldOfView,
             CameraOriginEntry::Exif => Self::Exif,
+            CameraOriginEntry::Pins { relative_sigma } => Self::Pins { relative_sigma },
             CameraOriginEntry::Typed => Self::Typed,
             CameraOriginEntry::File { name } => Self::File(name),
         }

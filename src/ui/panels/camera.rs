@@ -143,7 +143,7 @@ fn take(photo: &Photo, camera: Intrinsics, form: &mut CameraForm, commands: &mut
 /// Where numbers came from that are no guess.
 fn quiet_origin(ui: &mut Ui, photo: &Photo, room: f32) {
     let text = match &photo.camera_origin {
-        CameraOrigin::AssumedFieldOfView | CameraOrigin::Exif => return,
+        CameraOrigin::AssumedFieldOfView | CameraOrigin::Exif | CameraOrigin::Pins { .. } => return,
         CameraOrigin::Typed => "Typed".to_owned(),
         CameraOrigin::File(name) => format!("From {name}"),
     };
@@ -161,6 +161,14 @@ fn guess(ui: &mut Ui, photo: &Photo) {
         }
         CameraOrigin::Exif => {
             note(ui, "Estimated from the photo's EXIF data. Drop a camera file or type the numbers.", true);
+        }
+        CameraOrigin::Pins { relative_sigma } => {
+            let percent = 100.0 * relative_sigma;
+            note(
+                ui,
+                &format!("Focal length estimated from pins, ± {percent:.1} %: so is the distance."),
+                true,
+            );
         }
         CameraOrigin::Typed | CameraOrigin::File(_) => {}
     }

@@ -130,6 +130,9 @@ fn actions(ui: &mut Ui, session: &Session, report: &PinReport, commands: &mut Ve
         if !report.is_solved {
             offer(ui, CommandId::SolvePins, "Pose from pins");
         }
+        if session.unavailable(CommandId::FocalFromPins).is_none() {
+            offer(ui, CommandId::FocalFromPins, "Focal length");
+        }
         offer(ui, CommandId::CopyPinsToNext, "To next photo");
         offer(ui, CommandId::ExportPins, "Save");
     });
