@@ -11,10 +11,12 @@
 mod chance;
 mod numbers;
 mod opencv;
+mod photos;
 mod pins;
 mod real;
+mod snap;
 
-const PARTS: [(&str, fn()); 2] = [("pins", pins::pins), ("real", real::real)];
+const PARTS: [(&str, fn()); 3] = [("pins", pins::pins), ("snap", snap::snap), ("real-snap", real::real)];
 
 fn main() {
     let named: Vec<String> = std::env::args().skip(1).filter(|name| !name.starts_with('-')).collect();

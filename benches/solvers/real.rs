@@ -8,7 +8,6 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 use glam::DVec3;
 use pinpose::math::{Intrinsics, Pose, rotation_from_rotation_vector};
@@ -21,7 +20,7 @@ use pinpose::solve::snap::{Snap, SnapHints, SnapVerdict};
 use serde_json::Value;
 
 use crate::chance::Chance;
-use crate::numbers::{median, percent, quantile};
+use crate::numbers::{cpu_secs, median, percent, quantile};
 
 const ROUNDS: usize = 2;
 const SMALLEST_VISIBLE_PART: f64 = 0.6;
@@ -40,31 +39,37 @@ struct Frame {
 }
 
 /// One snap, measured.
-struct Run {
-    object: String,
-    before: PoseError,
-    after: PoseError,
+pub struct Run {
+    pub object: String,
+    pub before: PoseError,
+    pub after: PoseError,
     /// Farther than the truth is positive.
-    depth_mm: f64,
-    verdict: SnapVerdict,
-    ms: f64,
+    pub depth_mm: f64,
+    pub verdict: SnapVerdict,
+    pub ms: f64,
 }
+
+/// A folder and which half of its frames; the first is for tuning.
+const PARTS: [(&str, Option<usize>); 3] =
+    [("lmo16 tuning half", Some(0)), ("lmo16 test half", Some(1)), ("linemod10", None)];
 
 pub fn real() {
     println!(
         "Snap on real photos: start 5°, 10 px, 3 % of the distance off; {ROUNDS} starts each, seed 1; mm and degrees"
     );
     header();
-    for (name, part) in [("lmo16 tuning half", Some(0)), ("lmo16 test half", Some(1)), ("linemod10", None)] {
-        let folder = name.split(' ').next().unwrap_or(name);
-        match frames(folder, part) {
-            Ok(frames) => report(name, &snap_all(&frames)),
-            Err(reason) => println!("{name}: left out, {reason}"),
-        }
+    PARTS.iter().for_each(|part| real_part(part));
+}
+
+pub fn real_part(&(name, half): &(&str, Option<usize>)) {
+    let folder = name.split(' ').next().unwrap_or(name);
+    match frames(folder, half) {
+        Ok(frames) => report(name, &snap_all(&frames)),
+        Err(reason) => println!("{name}: left out, {reason}"),
     }
 }
 
-fn header() {
+pub fn header() {
     println!(
         "{:<24}{:>5}{:>9}{:>9}{:>8}{:>8}{:>8}{:>8}{:>9}{:>9}{:>8}",
         "", "runs", "start", "ADD", "p90", "rot °", "dz", "|dz|", "worse", "refused", "ms"
@@ -72,7 +77,7 @@ fn header() {
 }
 
 /// One row for all, then one for each object.
-fn report(name: &str, runs: &[Run]) {
+pub fn report(name: &str, runs: &[Run]) {
     row(name, &runs.iter().collect::<Vec<_>>());
     let mut objects: Vec<&str> = runs.iter().map(|run| run.object.as_str()).collect();
     objects.sort_unstable();
@@ -101,7 +106,7 @@ fn row(name: &str, runs: &[&Run]) {
 }
 
 /// A pose that is off by exactly this much in chance directions.
-fn disturbed(
+pub fn disturbed(
     chance: &mut Chance,
     camera: &Intrinsics,
     truth: &Pose,
@@ -137,9 +142,9 @@ fn snap_one(chance: &mut Chance, frame: &Frame, object: &Object) -> Run {
     let others = frame.objects.iter().filter(|other| other.name != object.name);
     let occluders = others.map(|other| (other.model.clone(), other.truth)).collect();
     let hints = SnapHints { occluders, ..SnapHints::default() };
-    let clock = Instant::now();
+    let clock = cpu_secs();
     let outcome = Snap::new(&frame.photo, &frame.camera, object.model.clone(), &start, hints).run();
-    let ms = clock.elapsed().as_secs_f64() * 1e3;
+    let ms = (cpu_secs() - clock) * 1e3;
     let error = |pose: &Pose| PoseError::between(pose, &object.truth, &object.mesh, usize::MAX);
     let found = outcome.camera_from_object;
     Run {
@@ -150,6 +155,10 @@ fn snap_one(chance: &mut Chance, frame: &Frame, object: &Object) -> Run {
         verdict: outcome.verdict,
         ms,
     }
+}
+
+pub fn data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data")
 }
 
 fn visible_part(frame: &Frame, number: usize) -> f64 {
@@ -168,7 +177,7 @@ fn visible_part(frame: &Frame, number: usize) -> f64 {
 
 /// The frames of a data folder; of one half, if that is asked for.
 fn frames(folder: &str, half: Option<usize>) -> Result<Vec<Frame>, String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(folder);
+    let folder = data().join(folder);
     let text =
         std::fs::read_to_string(folder.join("case.json")).map_err(|_| "the data folder is not here")?;
     let case: Value = serde_json::from_str(&text).map_err(|error| error.to_string())?;

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::linear::{Matrix, congruent};
+use super::linear::{Matrix, congruent, solve};
 use crate::math::{Intrinsics, NEAR_MM, Pose, rotation_from_rotation_vector};
 
 /// Turns the pose by the rotation vector in `step[..3]` about `pivot_camera_mm` and shifts it by `step[3..]`, all in camera
@@ -73,6 +73,12 @@ impl TwistCovariance {
     /// The covariance of (turn about `pivot_camera_mm`, shift of that point), in camera axes, radians and millimetres.
     pub fn about(&self, pivot_camera_mm: DVec3) -> Matrix<6> {
         congruent(&shifted_pivot(-pivot_camera_mm), &self.0)
+    }
+
+    /// How far this twist is from none, in standard deviations, squared; `None` for a covariance without an inverse.
+    pub fn mahalanobis_squared(&self, twist: &[f64; 6]) -> Option<f64> {
+        let weighted = solve(&self.0, twist)?;
+        Some(twist.iter().zip(weighted).map(|(a, b)| a * b).sum())
     }
 }
 

@@ -2,8 +2,10 @@
 
 use glam::DVec2;
 
+use super::palette::Palette;
 use crate::math::{ImageRect, Intrinsics};
 use crate::photo::{Pixels, half_size};
+use crate::raster::Mask;
 
 /// A cut-out of the photo, with the camera that sees just that.
 #[derive(Debug, Clone)]
@@ -13,6 +15,12 @@ pub struct Picture {
     pub height: usize,
     /// Colours in sRGB, 0 to 1, row by row.
     colors: Vec<[f32; 3]>,
+    /// The same, as numbers of a few colours.
+    pub palette: Palette,
+    /// How strong and in which direction colours change at each pixel: of length 0 where they do not, near 1 at a clear edge.
+    gradients: Vec<[f32; 2]>,
+    /// Where somebody has said that the object is, pixel by pixel.
+    mask: Option<Vec<bool>>,
     /// The photo's pixel that the cut-out begins with.
     origin: DVec2,
     /// How many pixels of the photo one pixel here is wide.
@@ -24,8 +32,8 @@ const LARGEST_OBJECT_PX: f64 = 300.0;
 
 impl Picture {
     /// The part of the photo around `object`, a rectangle in its pixels, with room for errors about it. `None` where nothing
-    /// of that is in the photo.
-    pub fn new(photo: &Pixels, camera: &Intrinsics, object: &ImageRect) -> Option<Self> {
+    /// of that is in the photo. A mask has the photo's size, or is left out.
+    pub fn new(photo: &Pixels, camera: &Intrinsics, object: &ImageRect, mask: Option<&Mask>) -> Option<Self> {
         let size_px = object.size().max_element();
         let margin = DVec2::splat(0.5 * size_px + 25.0);
         let photo_rect = ImageRect::of_photo(photo.width, photo.height);
@@ -58,29 +66,57 @@ impl Picture {
             };
             photo_px *= 2.0;
         }
-        let colors = cut
+        let colors: Vec<[f32; 3]> = cut
             .0
             .rgba
             .chunks_exact(4)
             .map(|p| [p[0], p[1], p[2]].map(|value| f32::from(value) / 255.0))
             .collect();
-        Some(Self {
+        let (width, height) = (cut.0.width as usize, cut.0.height as usize);
+        let mut picture = Self {
             camera,
-            width: cut.0.width as usize,
-            height: cut.0.height as usize,
+            width,
+            height,
+            palette: Palette::new(&colors),
+            gradients: gradients(&colors, width, height),
+            mask: None,
             colors,
             origin: cut.1,
             photo_px,
-        })
+        };
+        picture.mask = mask
+            .filter(|mask| (mask.width(), mask.height()) == (photo.width, photo.height))
+            .map(|mask| picture.cut_mask(mask));
+        Some(picture)
+    }
+
+    fn cut_mask(&self, mask: &Mask) -> Vec<bool> {
+        let pixels = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x as f64, y as f64)));
+        let is_set = |(x, y)| {
+            let place = ((DVec2::new(x, y) + 0.5) * self.photo_px - 0.5 + self.origin).round();
+            place.x >= 0.0
+                && place.y >= 0.0
+                && place.x < f64::from(mask.width())
+                && place.y < f64::from(mask.height())
+                && mask.get(place.x as u32, place.y as u32)
+        };
+        pixels.map(is_set).collect()
+    }
+
+    /// Whether the mask says that the object is at this pixel; `None` without a mask.
+    pub fn masked(&self, index: usize) -> Option<bool> {
+        self.mask.as_ref()?.get(index).copied()
+    }
+
+    /// How clear an edge across `normal` there is at a place: 0 to 1. `None` outside.
+    pub fn edge(&self, pixel: DVec2, normal: DVec2) -> Option<f32> {
+        let [x, y] = self.between(&self.gradients, pixel)?;
+        Some((x * normal.x as f32 + y * normal.y as f32).abs())
     }
 
     /// Where a pixel of the photo is here.
     pub fn place_of(&self, photo_pixel: DVec2) -> DVec2 {
         (photo_pixel - self.origin + 0.5) / self.photo_px - 0.5
-    }
-
-    pub fn colors(&self) -> &[[f32; 3]] {
-        &self.colors
     }
 
     /// The number of the pixel nearest to a place; `None` outside.
@@ -92,6 +128,10 @@ impl Picture {
 
     /// The colour between four pixels; `None` outside of their centres.
     pub fn color(&self, pixel: DVec2) -> Option<[f32; 3]> {
+        self.between(&self.colors, pixel)
+    }
+
+    fn between<const N: usize>(&self, values: &[[f32; N]], pixel: DVec2) -> Option<[f32; N]> {
         let corner = pixel.floor();
         let is_inside = corner.x >= 0.0
             && corner.y >= 0.0
@@ -102,14 +142,53 @@ impl Picture {
         }
         let [right, down] = (pixel - corner).to_array().map(|part| part as f32);
         let first = corner.y as usize * self.width + corner.x as usize;
-        let [a, b] = [self.colors[first], self.colors[first + 1]];
-        let [c, d] = [self.colors[first + self.width], self.colors[first + self.width + 1]];
+        let [a, b] = [values[first], values[first + 1]];
+        let [c, d] = [values[first + self.width], values[first + self.width + 1]];
         Some(std::array::from_fn(|k| {
             let above = a[k] + (b[k] - a[k]) * right;
             let below = c[k] + (d[k] - c[k]) * right;
             above + (below - above) * down
         }))
     }
+}
+
+/// A picture in which colours change less than this from pixel to pixel has no edges, only noise.
+const FAINTEST_USUAL: f32 = 0.01;
+
+/// Of the channel that changes most (Sobel's masks), divided by how much is usual in this picture, so that a clear edge in
+/// a dark picture is as good as one in the sun. On either side of an edge they point the same way.
+fn gradients(colors: &[[f32; 3]], width: usize, height: usize) -> Vec<[f32; 2]> {
+    let mut gradients = vec![[0.0_f32; 2]; width * height];
+    for y in 1..height.saturating_sub(1) {
+        for x in 1..width.saturating_sub(1) {
+            gradients[y * width + x] = strongest_gradient(colors, y * width + x, width);
+        }
+    }
+    let length = |[x, y]: [f32; 2]| x.hypot(y);
+    let usual = gradients.iter().map(|&g| length(g)).sum::<f32>() / (gradients.len() as f32).max(1.0);
+    let scale = usual.max(FAINTEST_USUAL);
+    gradients.iter().map(|&g| g.map(|value| value / (length(g) + scale))).collect()
+}
+
+/// Per pixel, with a sign that does not depend on which side is brighter: edges are lines here, not steps.
+fn strongest_gradient(colors: &[[f32; 3]], i: usize, width: usize) -> [f32; 2] {
+    let mut best = [0.0_f32; 2];
+    let channels =
+        (0..3).map(|channel| sobel(|row, column| colors[i + row * width + column - width - 1][channel]));
+    for [x, y] in channels {
+        if x * x + y * y > best[0] * best[0] + best[1] * best[1] {
+            best = [x, y];
+        }
+    }
+    let is_turned = best[0] < 0.0 || (best[0] == 0.0 && best[1] < 0.0);
+    best.map(|value| if is_turned { -value } else { value } / 8.0)
+}
+
+/// Sobel's two masks on the pixels at rows and columns 0 to 2.
+fn sobel(at: impl Fn(usize, usize) -> f32) -> [f32; 2] {
+    let x = at(0, 2) + 2.0 * at(1, 2) + at(2, 2) - at(0, 0) - 2.0 * at(1, 0) - at(2, 0);
+    let y = at(2, 0) + 2.0 * at(2, 1) + at(2, 2) - at(0, 0) - 2.0 * at(0, 1) - at(0, 2);
+    [x, y]
 }
 
 /// Whole pixels between two places, and the first of them.
@@ -144,7 +223,7 @@ mod tests {
         let camera = Intrinsics::from_focal(200.0, 250, 200);
         for (size, factor) in [(80.0, 1.0), (700.0, 4.0)] {
             let rect = ImageRect { min: DVec2::splat(60.0), max: DVec2::splat(60.0 + size) };
-            let picture = Picture::new(&ramp(250, 200), &camera, &rect).unwrap();
+            let picture = Picture::new(&ramp(250, 200), &camera, &rect, None).unwrap();
             assert_eq!(picture.photo_px, factor);
             for point in [DVec3::new(-0.05, 0.02, 1.0), DVec3::new(0.1, 0.1, 1.0)] {
                 let photo_pixel = camera.project(point).unwrap();
@@ -155,6 +234,6 @@ mod tests {
             }
         }
         let outside = ImageRect { min: DVec2::splat(900.0), max: DVec2::splat(950.0) };
-        assert!(Picture::new(&ramp(250, 200), &camera, &outside).is_none());
+        assert!(Picture::new(&ramp(250, 200), &camera, &outside, None).is_none());
     }
 }

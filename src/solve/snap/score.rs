@@ -9,7 +9,7 @@ use crate::solve::contour::{ContourPoint, DepthView, EdgeKind, OBJECT_ID};
 pub struct SnapScore {
     /// How well the colours on the two sides of the outline are told apart.
     pub regions: f64,
-    /// What part of the edges has an edge of the picture on it.
+    /// How clear the edges of the picture are under those of the object.
     pub edges: f64,
 }
 
@@ -22,16 +22,29 @@ impl SnapScore {
 /// Samples on either side of the outline, in pixels.
 const REACH_PX: i32 = 6;
 
-/// Scores a pose by the contour points that it has.
+/// Scores a pose by the contour points that it has and by colours that were learnt from it: a pose that puts the contour
+/// where colours change is one whose colours are well told apart. So no other pose is the judge, and scores of any two poses
+/// can be compared.
 pub fn score(picture: &Picture, view: &DepthView, colors: &ColorModel, points: &[ContourPoint]) -> SnapScore {
     let regions: Vec<f64> = points
         .iter()
         .filter(|point| point.kind == EdgeKind::Outline)
         .filter_map(|point| separation(picture, view, colors, point))
         .collect();
-    let edges: Vec<f64> = points.iter().filter_map(|point| sharpness(picture, point)).collect();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / (values.len() as f64).max(1.0);
-    SnapScore { regions: mean(&regions), edges: mean(&edges) }
+    let (mut sum, mut total) = (0.0, 0.0);
+    for point in points {
+        let weight = match point.kind {
+            EdgeKind::Outline => 1.0,
+            EdgeKind::Inner => 0.6,
+            EdgeKind::Crease => 0.4,
+        };
+        if let Some(clearness) = clearness(picture, point) {
+            sum += weight * clearness;
+            total += weight;
+        }
+    }
+    let mean = regions.iter().sum::<f64>() / (regions.len() as f64).max(1.0);
+    SnapScore { regions: mean, edges: sum / f64::max(total, 1.0) }
 }
 
 /// The mean probability of being right about pixels beside the outline, minus chance.
@@ -47,7 +60,7 @@ fn separation(picture: &Picture, view: &DepthView, colors: &ColorModel, point: &
         if distance.abs() > 2.0 && owner != wanted {
             continue;
         }
-        let odds = f64::from(colors.log_odds(&picture.colors()[index], sector));
+        let odds = f64::from(colors.log_odds(picture, index, sector));
         // tanh(odds / 2) is twice the probability minus one.
         sum += (0.5 * odds).tanh() * -distance.signum();
         count += 1;
@@ -55,15 +68,8 @@ fn separation(picture: &Picture, view: &DepthView, colors: &ColorModel, point: &
     (count > 3).then(|| sum / f64::from(count))
 }
 
-/// Is the change of colour here larger than a few pixels away? 1 where it stands out clearly, 0 where it does not.
-fn sharpness(picture: &Picture, point: &ContourPoint) -> Option<f64> {
-    let change = |offset: f64| -> Option<f64> {
-        let middle = point.pixel + point.normal * offset;
-        let (before, after) = (picture.color(middle - point.normal)?, picture.color(middle + point.normal)?);
-        Some(f64::from(before.iter().zip(after).map(|(a, b)| (a - b).powi(2)).sum::<f32>()).sqrt())
-    };
-    let here = change(-0.5)?.max(change(0.0)?).max(change(0.5)?);
-    let around = [-6.0, -4.5, -3.0, 3.0, 4.5, 6.0].into_iter().map(change).collect::<Option<Vec<f64>>>()?;
-    let around = around.iter().sum::<f64>() / around.len() as f64;
-    Some(((here - around) / (here + around + 0.05)).max(0.0))
+/// Of the edge here, allowing for half a pixel to either side.
+fn clearness(picture: &Picture, point: &ContourPoint) -> Option<f64> {
+    let at = |offset: f64| picture.edge(point.pixel + point.normal * offset, point.normal).map(f64::from);
+    Some(0.25 * at(-0.8)? + 0.5 * at(0.0)? + 0.25 * at(0.8)?)
 }

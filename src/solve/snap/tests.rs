@@ -1,9 +1,12 @@
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::super::test_chance::Chance;
+use super::colors::{Band, ColorModel};
 use super::*;
+use crate::math::ImageRect;
 use crate::mesh::test_shapes::cube;
-use crate::photo::Pixels;
+use crate::raster::RasterImage;
+use crate::solve::contour::{ContourPoint, DepthView, EdgeKind, OBJECT_ID};
 
 const HALF_SIZES_MM: DVec3 = DVec3::new(80.0, 45.0, 30.0);
 
@@ -127,4 +130,81 @@ fn slices_and_one_go_end_alike_and_pins_pull() {
     let pinned = Snap::new(&picture, &camera(), model(), &start, hints).run();
     let error_mm = corner_error_mm(&pinned.camera_from_object, &truth());
     assert!(error_mm < 1.5, "{error_mm}");
+}
+
+/// Red to the left of column 60, blue to the right; the object is taken to reach to column `to`.
+fn two_halves(to: usize) -> (Picture, DepthView, Vec<ContourPoint>) {
+    let (width, height) = (120_usize, 100_usize);
+    let columns = (0..height).flat_map(|_| 0..width);
+    let rgba = columns.clone().flat_map(|x| if x < 60 { [200, 40, 40, 255] } else { [30, 60, 190, 255] });
+    let photo = Pixels { width: width as u32, height: height as u32, rgba: rgba.collect() };
+    let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
+    let rect = ImageRect::of_photo(photo.width, photo.height);
+    let picture = Picture::new(&photo, &camera, &rect, None).unwrap();
+    let ids = columns.map(|x| if x < to { OBJECT_ID } else { 0 }).collect();
+    let image =
+        RasterImage { width: photo.width, height: photo.height, depth_mm: vec![500.0; width * height], ids };
+    let view = DepthView { image, region: PixelRegion::of_camera(&picture.camera) };
+    let points = (10..90).map(|y| ContourPoint {
+        point_mm: DVec3::Z,
+        pixel: DVec2::new(to as f64 - 0.5, f64::from(y)),
+        normal: DVec2::X,
+        kind: EdgeKind::Outline,
+    });
+    (picture, view, points.collect())
+}
+
+#[test]
+fn a_straight_border_is_found_by_its_colours_and_by_its_edge() {
+    for (to, is_better) in [(56, false), (60, true), (63, false)] {
+        let (picture, view, points) = two_halves(to);
+        let colors =
+            ColorModel::learn(&picture, &view, &points, Band { unsure_px: 5.0, reach_px: 40.0 }).unwrap();
+        let wanted = 60.0 - to as f64;
+        for (pulls, tolerance_px) in [
+            // A step that is smooth over more than a pixel is not placed better than this near the line's end.
+            (lines::search(&picture, &view, &colors, &points, 1), 0.6),
+            // The parabola through three samples of an even slope.
+            (edges::search(&picture, &colors, &points, 6.0), 0.1),
+        ] {
+            assert_eq!(pulls.len(), points.len());
+            for pull in pulls {
+                assert!((pull.offset_px - wanted).abs() < tolerance_px, "{} {wanted}", pull.offset_px);
+            }
+        }
+        let score = score::score(&picture, &view, &colors, &points);
+        assert_eq!(score.regions > 0.75 && score.edges > 0.5, is_better, "{score:?}");
+    }
+}
+
+#[test]
+fn a_mask_says_where_the_object_is_when_colours_do_not() {
+    let picture = photo(&truth(), 0.0);
+    let mask = Mask::from_pixels(
+        320,
+        240,
+        (0..240)
+            .flat_map(|y| (0..320).map(move |x| DVec2::new(f64::from(x), f64::from(y))))
+            .map(|pixel| box_color(&truth(), camera().unproject(pixel)).is_some()),
+    );
+    assert!(mask.count() > 1000);
+    let start = truth().translated(DVec3::new(8.0, -6.0, 15.0));
+    let options = SnapOptions { mask: Some(mask), ..SnapOptions::default() };
+    let outcome = Snap::with(&picture, &camera(), model(), &start, SnapHints::default(), &options).run();
+    let error_mm = corner_error_mm(&outcome.camera_from_object, &truth());
+    // A mask is exact to half a pixel: 0.75 mm here, and some ten times that along the view.
+    assert!(outcome.verdict == SnapVerdict::Improved && error_mm < 10.0, "{error_mm} {outcome:?}");
+}
+
+#[test]
+fn a_wide_snap_finds_home_from_afar() {
+    let photo = photo(&truth(), 1.0);
+    let turn = crate::math::rotation_from_rotation_vector(DVec3::new(0.25, -0.2, 0.1));
+    let start = (Pose::rotation_about(truth().translation_mm, turn) * truth())
+        .translated(DVec3::new(20.0, -15.0, 30.0));
+    let options = SnapOptions { reach: SnapReach::Wide, ..SnapOptions::default() };
+    let outcome = Snap::with(&photo, &camera(), model(), &start, SnapHints::default(), &options).run();
+    let error_mm = corner_error_mm(&outcome.camera_from_object, &truth());
+    // The prior of the start holds back a part of what is left.
+    assert!(error_mm < 8.0, "{error_mm} {outcome:?}");
 }

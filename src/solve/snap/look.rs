@@ -1,0 +1,58 @@
+//! What a pose looks like in a picture.
+
+use super::colors::{Band, ColorModel};
+use super::picture::Picture;
+use super::score::{SnapScore, score};
+use crate::math::{ImageRect, Intrinsics, NEAR_MM, Pose};
+use crate::raster::PixelRegion;
+use crate::solve::contour::{ContourModel, ContourPoint, DepthView, Occluders};
+
+/// Contour points, about; more lie so close that they tell the same.
+const POINTS: f64 = 220.0;
+
+pub struct Look {
+    pub view: DepthView,
+    pub points: Vec<ContourPoint>,
+    size_px: f64,
+    /// Points closer than two pixels to each other tell the same: what part of their weight is their own.
+    pub independence: f64,
+}
+
+impl Look {
+    pub fn at(picture: &Picture, model: &ContourModel, occluders: &Occluders, pose: &Pose) -> Self {
+        let region = PixelRegion::of_camera(&picture.camera);
+        let view = DepthView::draw(&picture.camera, model, *pose, occluders, region);
+        let distance = pose.transform_point(model.center_mm()).z.max(NEAR_MM);
+        let size_px = picture.camera.focal_px() * model.diameter_mm() / distance;
+        let spacing_px = (std::f64::consts::PI * size_px / POINTS).max(0.5);
+        let points = model.points(&picture.camera, pose, &view, spacing_px);
+        Self { view, points, size_px, independence: (spacing_px / 2.0).min(1.0) }
+    }
+
+    /// The colours on the two sides of this pose's outline. Pixels within `unsure_px` of it teach nothing, or those within a
+    /// part of the object's size if that is less.
+    pub fn colors(&self, picture: &Picture, unsure_px: f64) -> Option<ColorModel> {
+        let unsure_px = unsure_px.min((0.06 * self.size_px).max(1.0));
+        let reach_px = self.size_px.clamp(12.0, 60.0);
+        ColorModel::learn(picture, &self.view, &self.points, Band { unsure_px, reach_px })
+    }
+
+    /// `None` where too little of the object is in the picture.
+    pub fn score(&self, picture: &Picture) -> Option<SnapScore> {
+        let colors = self.colors(picture, 1.0)?;
+        Some(score(picture, &self.view, &colors, &self.points))
+    }
+}
+
+pub fn is_before_camera(pose: &Pose, model: &ContourModel) -> bool {
+    let center = pose.transform_point(model.center_mm());
+    center.is_finite() && center.z > 0.5 * model.diameter_mm() + NEAR_MM
+}
+
+/// Around the object's box in the photo; `None` where a corner is not before the camera.
+pub fn object_rect(camera: &Intrinsics, model: &ContourModel, pose: &Pose) -> Option<ImageRect> {
+    let corners = model.mesh().bounds().corners();
+    let pixels: Option<Vec<_>> =
+        corners.into_iter().map(|corner| camera.project(pose.transform_point(corner))).collect();
+    ImageRect::around(pixels?)
+}

@@ -1,0 +1,116 @@
+//! What is known before the picture is looked at: the start, and pins.
+
+use glam::DVec3;
+
+use super::SnapReach;
+use super::picture::Picture;
+use crate::math::{Pose, rotation_from_rotation_vector, rotation_vector_from_rotation};
+use crate::solve::contour::ContourModel;
+use crate::solve::least_squares::NormalEquations;
+use crate::solve::motion::{motion_row, project_with_jacobian};
+use crate::solve::pins::Pin;
+
+/// Noise of a click: what a pin pulls with.
+const PIN_SIGMA_PX: f64 = 2.0;
+/// How many starts there are, and how far the further ones are turned.
+const NEAR_STARTS: usize = 5;
+const NEAR_TURN_DEG: f64 = 6.0;
+const WIDE_STARTS: usize = 11;
+const WIDE_TURN_DEG: f64 = 14.0;
+
+#[derive(Debug, Clone)]
+pub struct Prior {
+    /// From the `object` frame to the `camera` frame.
+    pub start: Pose,
+    pub pins: Vec<Pin>,
+    pub reach: SnapReach,
+}
+
+/// How well somebody puts an object by hand, one standard deviation.
+struct Spread {
+    /// About each axis.
+    turn_rad: f64,
+    /// As a part of the distance.
+    depth: f64,
+    /// Along each axis of the photo.
+    shift_px: f64,
+}
+
+impl Prior {
+    /// Where to begin: the start itself first.
+    pub fn starts(&self, model: &ContourModel) -> Vec<Pose> {
+        let center = self.start.transform_point(model.center_mm());
+        let (count, turn) = match self.reach {
+            SnapReach::Near => (NEAR_STARTS, NEAR_TURN_DEG.to_radians()),
+            SnapReach::Wide => (WIDE_STARTS, WIDE_TURN_DEG.to_radians()),
+        };
+        let (x, y, z) = (DVec3::X * turn, DVec3::Y * turn, DVec3::Z * turn);
+        let slant = std::f64::consts::FRAC_1_SQRT_2;
+        let turns = [
+            DVec3::ZERO,
+            x,
+            -x,
+            y,
+            -y,
+            (x + y) * slant,
+            (x - y) * slant,
+            (y - x) * slant,
+            -(x + y) * slant,
+            z,
+            -z,
+        ];
+        turns
+            .into_iter()
+            .take(count)
+            .map(|turn| Pose::rotation_about(center, rotation_from_rotation_vector(turn)) * self.start)
+            .collect()
+    }
+
+    fn spread(&self) -> Spread {
+        match self.reach {
+            SnapReach::Near => Spread { turn_rad: 5_f64.to_radians(), depth: 0.04, shift_px: 10.0 },
+            SnapReach::Wide => Spread { turn_rad: 12_f64.to_radians(), depth: 0.08, shift_px: 20.0 },
+        }
+    }
+
+    /// Adds what pins want of a pose, for small motions of it about `pivot`, in camera axes.
+    pub fn add_pins(
+        &self,
+        equations: &mut NormalEquations<6>,
+        picture: &Picture,
+        (pose, pivot_camera_mm): (&Pose, DVec3),
+    ) {
+        for pin in self.pins.iter().filter(|pin| pin.enabled) {
+            let seen = pose.transform_point(pin.point_mm);
+            let Some((pixel, jacobian)) = project_with_jacobian(&picture.camera, seen) else { continue };
+            let weight = pin.weight * (picture.photo_px / PIN_SIGMA_PX).powi(2);
+            let residual = pixel - picture.place_of(pin.pixel);
+            for (gradient, residual) in jacobian.into_iter().zip(residual.to_array()) {
+                equations.add(&motion_row(seen - pivot_camera_mm, gradient), residual, weight);
+            }
+        }
+    }
+
+    /// The start is where somebody put the object on purpose: what the picture says nothing of stays as it was.
+    pub fn add_start(
+        &self,
+        equations: &mut NormalEquations<6>,
+        picture: &Picture,
+        pose: &Pose,
+        center_mm: DVec3,
+    ) {
+        let [from, to] = [&self.start, pose].map(|pose| pose.transform_point(center_mm));
+        let turned = rotation_vector_from_rotation(&(pose.rotation * self.start.rotation.transpose()));
+        let Spread { turn_rad, depth, shift_px } = self.spread();
+        let lateral_mm = shift_px * from.z / (picture.camera.focal_px() * picture.photo_px);
+        let depth_mm = depth * from.z;
+        let shift = to - from;
+        let sigmas = [turn_rad, turn_rad, turn_rad, lateral_mm, lateral_mm, depth_mm];
+        let residuals = [turned.x, turned.y, turned.z, shift.x, shift.y, shift.z];
+        for (i, (residual, sigma)) in residuals.into_iter().zip(sigmas).enumerate() {
+            let mut row = [0.0; 6];
+            row[i] = 1.0;
+            equations.add(&row, residual, 1.0 / (sigma * sigma));
+        }
+    }
+}
