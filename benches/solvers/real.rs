@@ -58,10 +58,10 @@ pub fn real() {
         "Snap on real photos: start 5°, 10 px, 3 % of the distance off; {ROUNDS} starts each, seed 1; mm and degrees"
     );
     header();
-    PARTS.iter().for_each(|part| real_part(part));
+    PARTS.iter().for_each(real_part);
 }
 
-pub fn real_part(&(name, half): &(&str, Option<usize>)) {
+fn real_part(&(name, half): &(&str, Option<usize>)) {
     let folder = name.split(' ').next().unwrap_or(name);
     match frames(folder, half) {
         Ok(frames) => report(name, &snap_all(&frames)),

@@ -116,7 +116,7 @@ mod tests {
         let palette = Palette::new(&colors);
         let (red, green) = (palette.labels[0], palette.labels[1]);
         assert_ne!(red, green);
-        for parts in palette.spread.iter() {
+        for parts in &palette.spread {
             // Sums of 48 parts in single precision.
             assert!((parts.iter().sum::<f32>() - 1.0).abs() < 1e-5);
         }
