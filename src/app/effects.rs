@@ -18,7 +18,7 @@ impl PinPose {
                 }
             }
             Effect::ExportPicture(request) => self.export(request),
-            Effect::Snap { photo, object } => self.start_snap(photo, object),
+            Effect::Snap { photo, object, reach } => self.start_snap(photo, object, reach),
             Effect::CopyText(text) => self.ctx.copy_text(text),
             Effect::NewScene => self.new_scene(),
             Effect::ShowScenes => self.show_scenes(),

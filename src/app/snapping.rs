@@ -11,7 +11,7 @@ use crate::platform;
 use crate::scene::{ObjectId, PhotoId, Sha256};
 use crate::session::{Command, Notice};
 use crate::solve::contour::ContourModel;
-use crate::solve::snap::{Progress, Snap, SnapHints, SnapOutcome, SnapVerdict};
+use crate::solve::snap::{Progress, Snap, SnapHints, SnapOptions, SnapOutcome, SnapReach, SnapVerdict};
 use crate::ui::Busy;
 
 /// Of each frame, for the solver.
@@ -37,6 +37,7 @@ struct Asked {
     photo: PhotoId,
     object: ObjectId,
     start: Pose,
+    reach: SnapReach,
 }
 
 /// The way from one pose to another, seen.
@@ -78,11 +79,11 @@ impl Snapping {
 }
 
 impl PinPose {
-    pub(super) fn start_snap(&mut self, photo: PhotoId, object: ObjectId) {
+    pub(super) fn start_snap(&mut self, photo: PhotoId, object: ObjectId, reach: SnapReach) {
         let start = self.session.scene().annotation(photo, object);
         let Some(start) = start.map(|annotation| annotation.camera_from_object) else { return };
         self.snapping.cancel();
-        self.snapping.asked = Some(Asked { photo, object, start });
+        self.snapping.asked = Some(Asked { photo, object, start, reach });
         self.ctx.request_repaint();
     }
 
@@ -146,7 +147,8 @@ impl PinPose {
             pins: annotation.map_or_else(Vec::new, |annotation| annotation.pins.clone()),
             occluders: models.into_iter().map(|(_, pose, model)| (model, pose)).collect(),
         };
-        let snap = Snap::new(&pixels, &camera, model, &asked.start, hints);
+        let options = SnapOptions { reach: asked.reach, ..SnapOptions::default() };
+        let snap = Snap::with(&pixels, &camera, model, &asked.start, hints, &options);
         self.snapping.running = Some((asked, Box::new(snap), 0.0));
     }
 
@@ -168,7 +170,7 @@ impl PinPose {
     }
 
     fn finish_snap(&mut self, asked: Asked, outcome: &SnapOutcome) {
-        let Asked { photo, object, start } = asked;
+        let Asked { photo, object, start, .. } = asked;
         let present = self.session.scene().annotation(photo, object);
         // Somebody has gone on by hand.
         if present.is_none_or(|annotation| annotation.camera_from_object != start) {

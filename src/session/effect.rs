@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::formats::{CameraFile, Incoming, PosesAs};
 use crate::scene::{ObjectId, PhotoId};
+use crate::solve::snap::SnapReach;
 
 /// What only the world outside can do.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,7 @@ pub enum Effect {
     Snap {
         photo: PhotoId,
         object: ObjectId,
+        reach: SnapReach,
     },
     /// The clipboard can be read in answer to a key alone; else the user is given a field to paste into.
     AskForPose,

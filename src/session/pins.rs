@@ -16,6 +16,7 @@ use crate::scene::{
 };
 use crate::solve::Uncertainty;
 use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
+use crate::solve::snap::SnapReach;
 
 /// A pose's place: one object in one photo.
 type Target = (PhotoId, ObjectId);
@@ -227,10 +228,10 @@ impl Session {
         )))])
     }
 
-    pub(super) fn ask_snap(&self) -> Applied {
+    pub(super) fn ask_snap(&self, reach: SnapReach) -> Applied {
         let Some((photo, object, _)) = self.selected_annotation() else { return Ok(Vec::new()) };
         self.check_movable((photo, object))?;
-        Ok(vec![Effect::Snap { photo, object }])
+        Ok(vec![Effect::Snap { photo, object, reach }])
     }
 
     pub(super) fn clear_pins(&mut self) -> Applied {

@@ -5,6 +5,7 @@ use super::pose::STORED;
 use super::{Arrangement, Command, CommandError, CommandId, Effect, NudgeFrame, Pick, Session, Tool};
 use crate::formats::PoseText;
 use crate::scene::{Layers, Look};
+use crate::solve::snap::SnapReach;
 
 /// Where the wipe's line is when it is switched on.
 const WIPE_START: f32 = 0.5;
@@ -51,7 +52,8 @@ impl Session {
             CommandId::MoveTool => self.apply(Command::SetTool(Tool::Move), now_ms),
             CommandId::RotateTool => self.apply(Command::SetTool(Tool::Rotate), now_ms),
             CommandId::PinTool => self.apply(Command::SetTool(Tool::Pin), now_ms),
-            CommandId::Snap => self.ask_snap(),
+            CommandId::Snap => self.ask_snap(SnapReach::Near),
+            CommandId::SnapWide => self.ask_snap(SnapReach::Wide),
             CommandId::SolvePins => self.solve_selected(now_ms),
             CommandId::FocalFromPins => self.focal_from_pins(now_ms),
             CommandId::ClearPins => self.clear_pins(),

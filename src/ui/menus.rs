@@ -84,6 +84,7 @@ pub const MENUS: [MenuPlan; 5] = [
             &[CommandId::MoveTool, CommandId::RotateTool, CommandId::PinTool],
             &[
                 CommandId::Snap,
+                CommandId::SnapWide,
                 CommandId::SolvePins,
                 CommandId::FocalFromPins,
                 CommandId::ClearPins,
