@@ -98,6 +98,21 @@ pub struct IncomingReference {
     pub poses: Vec<(usize, usize, Pose)>,
 }
 
+impl IncomingPose {
+    /// One from a foreign file: somebody estimated or annotated it, when and how is not known.
+    pub fn foreign(object: usize, camera_from_object: Pose, score: Option<f64>) -> Self {
+        Self {
+            object,
+            camera_from_object,
+            state: AnnotationState::Posed,
+            source: PoseSource::Imported,
+            changed_at_ms: None,
+            score: score.filter(|score| score.is_finite()),
+            pins: Vec::new(),
+        }
+    }
+}
+
 impl IncomingObject {
     pub fn named(key: FileKey) -> Self {
         Self { key, mesh_from_file: None, symmetries: None, look: None }
