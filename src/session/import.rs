@@ -44,12 +44,12 @@ impl Session {
         if let Some(first) = new_photos.first() {
             self.photo = Some(*first);
         }
-        self.add_meshes(&batch, now_ms);
+        let mut effects = self.add_meshes(&batch, now_ms);
         for camera in batch.cameras {
             self.take_camera(camera, &new_photos);
         }
 
-        let mut effects = self.retry_waiting(now_ms);
+        effects.extend(self.retry_waiting(now_ms));
         let mut asked = Vec::new();
         for incoming in batch.poses {
             match batch.poses_as {
@@ -87,23 +87,30 @@ impl Session {
 
     /// Adds each new mesh as an object. It is placed in the photo that is shown, unless the same drop brings poses: they say
     /// where it belongs.
-    fn add_meshes(&mut self, batch: &Batch, now_ms: f64) {
+    fn add_meshes(&mut self, batch: &Batch, now_ms: f64) -> Vec<Effect> {
+        let mut new = Vec::new();
         for mesh in &batch.meshes {
             let known = self.scene.objects.iter().find(|object| object.mesh.sha256 == mesh.sha256);
             let known = known.map(|object| object.id);
             let id = match known {
                 Some(id) => id,
-                None => self.scene.add_object(mesh.clone()),
+                None => {
+                    let id = self.scene.add_object(mesh.clone());
+                    new.push(id);
+                    id
+                }
             };
             self.complete_mesh(id, mesh);
             self.selected = Some(id);
         }
+        new.retain(|id| !self.is_told_frame(*id, &batch.poses));
+        let effects = self.give_units(&new);
         let waits_for_poses =
             !batch.poses.is_empty() || self.waiting.iter().any(|w| w.incoming.pose_count() > 0);
         if waits_for_poses {
-            return;
+            return effects;
         }
-        let Some(photo) = self.photo else { return };
+        let Some(photo) = self.photo else { return effects };
         // Objects that came before any photo are placed with the first one.
         let unplaced: Vec<_> = self.scene.objects.iter().map(|object| object.id).collect();
         for id in unplaced {
@@ -111,6 +118,7 @@ impl Session {
                 self.scene.place(photo, id, now_ms);
             }
         }
+        effects
     }
 
     /// A mesh that came without its textures gets them when it is loaded again together with them.
@@ -123,7 +131,7 @@ impl Session {
             again.clone()
         } else {
             match again.with_mesh_from_file(DMat4::IDENTITY, object.mesh_from_file) {
-                Ok(mesh) => Arc::new(mesh),
+                Ok(mesh) => mesh,
                 Err(_) => return,
             }
         };
@@ -308,6 +316,7 @@ impl Session {
         restore_depth_maps(&mut scene, document, &opening.photos);
         self.scene = scene;
         self.questions.clear();
+        self.unit_questions.clear();
         self.waiting.clear();
         self.log = Log::default();
         self.look = document.view.look();
