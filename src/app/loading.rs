@@ -1,5 +1,6 @@
 //! Files on their way in: read, recognised, parsed on another thread, and given to the session together.
 
+mod foreign;
 mod into_session;
 mod side_jobs;
 
@@ -68,11 +69,13 @@ pub struct Arrival {
     pub poses_as: Option<PosesAs>,
     pub images_as: ImagesAs,
     pub reply: Option<PageReply>,
+    /// Foreign pictures have been made PNGs as far as the browser reads them, which was said of these; `None`: not tried.
+    pub converted: Option<Vec<String>>,
 }
 
 impl Arrival {
     pub fn of_files(files: Vec<Result<FileBytes, String>>) -> Self {
-        Self { files, poses_as: None, images_as: ImagesAs::Photos, reply: None }
+        Self { files, poses_as: None, images_as: ImagesAs::Photos, reply: None, converted: None }
     }
 }
 
@@ -235,6 +238,7 @@ impl Loading {
         let batch = Batch { poses_as: arrival.poses_as, ..Batch::default() };
         let mut load = self.new_load(batch, arrival.reply);
         load.images_as = arrival.images_as;
+        load.warnings = arrival.converted.unwrap_or_default();
         let mut files = Vec::new();
         let is_alone = arrival.files.len() == 1;
         for file in arrival.files {
@@ -346,7 +350,7 @@ impl Loading {
     /// Photos that were decoded, and loads that are complete. While a scene `is_switching`, other files wait for it.
     fn poll(&mut self, is_switching: bool) -> (Vec<(Sha256, Arc<Pixels>)>, Vec<Load>) {
         for arrival in self.arrived.take() {
-            self.start(arrival);
+            self.receive(arrival);
         }
         let mut decoded = Vec::new();
         for (job, file, done) in self.jobs.poll() {
@@ -375,6 +379,10 @@ impl Loading {
 fn accepted(pick: Pick) -> &'static [&'static str] {
     match pick {
         Pick::Anything => &[],
+        // The last four where the browser reads them.
+        Pick::Photos | Pick::Masks if cfg!(target_arch = "wasm32") => {
+            &["png", "jpg", "jpeg", "webp", "bmp", "tif", "tiff", "avif", "gif", "heic", "heif"]
+        }
         Pick::Photos | Pick::Masks => &["png", "jpg", "jpeg", "webp", "bmp", "tif", "tiff"],
         Pick::DepthMap => &["png", "tif", "tiff"],
         Pick::Meshes => &["ply", "obj", "stl", "glb", "gltf", "off"],

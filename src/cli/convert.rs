@@ -10,6 +10,7 @@ use crate::formats::export::{
     CameraAxes, ExportJob, ExportOptions, ExportPart, LengthUnit, PhotoChoice, PoseDirection, ZipStream,
 };
 use crate::formats::{Keep, NamedFile, write_workspace};
+use crate::mesh::MeshUnit;
 use crate::scene::{Scene, file_stem};
 use crate::session::Session;
 
@@ -19,6 +20,7 @@ struct Options {
     target: Target,
     /// Names of photos; none is all of them.
     photos: Vec<String>,
+    mesh_unit: Option<MeshUnit>,
     export: ExportOptions,
 }
 
@@ -33,7 +35,7 @@ enum Target {
 
 pub fn run(parser: lexopt::Parser) -> Outcome {
     let mut options = read_options(parser)?;
-    let session = open::open_session(&options.paths)?;
+    let session = open::open_session(&options.paths, options.mesh_unit)?;
     for (file, missing) in session.missing_files() {
         eprintln!("pinpose: {file}: left out what is in {}: not among the files", missing.join(", "));
     }
@@ -104,6 +106,7 @@ fn photo_named(scene: &Scene, name: &str) -> Result<crate::scene::PhotoId, Failu
 fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
     let mut paths: Vec<PathBuf> = Vec::new();
     let mut photos = Vec::new();
+    let mut mesh_unit = None;
     let mut parts = BTreeSet::new();
     let mut export = ExportOptions::of([]);
     while let Some(argument) = parser.next()? {
@@ -111,6 +114,7 @@ fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
             lexopt::Arg::Value(path) => paths.push(path.into()),
             lexopt::Arg::Long("to") => parts.extend(read_parts(&text(&mut parser)?)?),
             lexopt::Arg::Long("photo") => photos.push(text(&mut parser)?),
+            lexopt::Arg::Long("mesh-unit") => mesh_unit = Some(open::mesh_unit(&mut parser)?),
             lexopt::Arg::Long("axes") => {
                 export.convention.axes =
                     word(&mut parser, &[("opencv", CameraAxes::OpenCv), ("opengl", CameraAxes::OpenGl)])?;
@@ -133,7 +137,7 @@ fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
     };
     let (target, parts) = target(&out, parts)?;
     export.parts = parts;
-    Ok(Options { paths, out, target, photos, export })
+    Ok(Options { paths, out, target, photos, mesh_unit, export })
 }
 
 /// What OUT is, from its extension and what was asked for; and what is to be in it.

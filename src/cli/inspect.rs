@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::source::Source;
 use super::{Failure, Outcome, open};
 use crate::formats::{FileWithCompanions, NamedFile, Parsed, with_companions};
+use crate::mesh::{FileUnit, MeshUnit};
 
 pub fn run(mut parser: lexopt::Parser) -> Outcome {
     let mut paths: Vec<PathBuf> = Vec::new();
@@ -112,18 +113,29 @@ fn describe(file: &NamedFile, parsed: &Parsed, warnings: &[String]) -> Value {
     json!({"file": file.name, "bytes": file.bytes.len(), "kind": kind, "content": content, "warnings": warnings})
 }
 
+/// Sizes are those that the mesh has once it is open.
 fn mesh_content(asset: &crate::scene::MeshAsset) -> Value {
     let mesh = &asset.mesh;
     let bounds = mesh.bounds();
+    let (unit, source, mm) = match asset.file_unit() {
+        FileUnit::Gltf => (MeshUnit::Metre, "its format", 1.0),
+        FileUnit::Named(unit) => (unit, "its file", unit.in_mm()),
+        FileUnit::Unknown => match MeshUnit::likely(bounds.size().max_element()) {
+            (unit, true) => (unit, "its size, doubtful", unit.in_mm()),
+            (unit, false) => (unit, "its size", unit.in_mm()),
+        },
+    };
     json!({
         "vertices": mesh.positions_mm().len(),
         "triangles": mesh.triangles().len(),
         "normals": mesh.normals().is_some(),
         "colors": mesh.has_colors(),
         "textures": mesh.paint().map_or(0, |paint| paint.textures.len()),
-        "min_mm": bounds.min.to_array(),
-        "max_mm": bounds.max.to_array(),
-        "size_mm": bounds.size().to_array(),
+        "unit": unit.symbol(),
+        "unit_from": source,
+        "min_mm": (bounds.min * mm).to_array(),
+        "max_mm": (bounds.max * mm).to_array(),
+        "size_mm": (bounds.size() * mm).to_array(),
         "sha256": asset.sha256.to_string(),
     })
 }

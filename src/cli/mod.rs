@@ -31,6 +31,7 @@ pinpose evaluate --truth T POSES… [--json | --csv]
 pinpose pins FILE                    2D-3D pairs and a camera (JSON) to a pose, residuals and covariance
 pinpose snap IN… [--photo NAME]… [--out POSES.json] [--json]
         refine every pose to its photo; scores, poses and covariances
+--mesh-unit mm|cm|m|in               with convert, render, evaluate and snap: of meshes that do not say theirs
 pinpose --help | --version
 ";
 

@@ -11,6 +11,7 @@ use crate::formats::{
     FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify, parse_text_or_archive,
     read_mesh_with, read_photo, read_photo_header, with_companions,
 };
+use crate::mesh::{MeshUnit, length_text};
 use crate::scene::PhotoAsset;
 use crate::session::{Batch, Command, Effect, Opening, PhotoChange, Session, Severity};
 
@@ -66,8 +67,9 @@ pub fn parse(file: &NamedFile, companions: &[NamedFile]) -> Result<(Parsed, Vec<
 }
 
 /// Opens everything together. Files of a folder that are none of ours (notes, licences) are left out with a word; a file
-/// that was named by itself has to be readable.
-pub fn open_session(paths: &[PathBuf]) -> Result<Session, Failure> {
+/// that was named by itself has to be readable. `mesh_unit` is that of meshes whose files do not say theirs and whose size
+/// leaves it open.
+pub fn open_session(paths: &[PathBuf], mesh_unit: Option<MeshUnit>) -> Result<Session, Failure> {
     let mut opened = Opened::default();
     let mut files = Vec::new();
     for path in paths {
@@ -88,7 +90,9 @@ pub fn open_session(paths: &[PathBuf]) -> Result<Session, Failure> {
     if !opened.problems.is_empty() {
         return Err(Failure::Input(opened.problems));
     }
-    opened.into_session()
+    let mut session = opened.into_session()?;
+    settle_units(&mut session, mesh_unit);
+    Ok(session)
 }
 
 #[derive(Default)]
@@ -244,6 +248,35 @@ impl Opened {
         give_depths(&mut session, self.depths);
         Ok(session)
     }
+}
+
+/// Nobody is there to be asked: what is taken for granted is said.
+fn settle_units(session: &mut Session, wanted: Option<MeshUnit>) {
+    while let Some(question) = session.unit_question() {
+        let unit = wanted.unwrap_or(question.likely);
+        // The question is gone, then.
+        let Ok(_) = session.apply(Command::AnswerUnit(unit), crate::platform::now_ms()) else { return };
+        if wanted.is_some() {
+            continue;
+        }
+        for object in question.objects.iter().filter_map(|id| session.scene().object(*id)) {
+            let side = length_text(object.mesh.mesh.bounds().size().max_element());
+            eprintln!(
+                "pinpose: {}: it does not say its unit and is taken to be in {unit}, its longest side {side}; --mesh-unit says \
+                 otherwise",
+                object.mesh.file_name
+            );
+        }
+    }
+}
+
+/// The value of `--mesh-unit`.
+pub fn mesh_unit(parser: &mut lexopt::Parser) -> Result<MeshUnit, Failure> {
+    let symbol = parser.value()?.to_string_lossy().into_owned();
+    MeshUnit::from_symbol(&symbol).ok_or_else(|| {
+        let known = MeshUnit::ALL.map(MeshUnit::symbol).join(", ");
+        Failure::Usage(format!("\"{symbol}\" is not one of {known}"))
+    })
 }
 
 /// Gives each depth map to its photo; what does not fit is said.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::{Failure, Outcome, open};
+use crate::mesh::MeshUnit;
 use crate::photo::{decode, decode_depth, png_rgba};
 use crate::render::{ExportKind, Layer, Renderer, export_picture, raster_png, silhouette_png};
 use crate::scene::{ObjectId, Photo, Scene, file_stem};
@@ -14,12 +15,13 @@ struct Options {
     paths: Vec<PathBuf>,
     out: PathBuf,
     kind: ExportKind,
+    mesh_unit: Option<MeshUnit>,
     as_json: bool,
 }
 
 pub fn run(parser: lexopt::Parser) -> Outcome {
     let options = read_options(parser)?;
-    let session = open::open_session(&options.paths)?;
+    let session = open::open_session(&options.paths, options.mesh_unit)?;
     let scene = session.scene();
     let problem = |text: String| Failure::Input(vec![text]);
     std::fs::create_dir_all(&options.out)
@@ -61,11 +63,13 @@ fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
     let mut paths = Vec::new();
     let mut out = None;
     let mut kind = ExportKind::Overlay;
+    let mut mesh_unit = None;
     let mut as_json = false;
     while let Some(argument) = parser.next()? {
         match argument {
             lexopt::Arg::Long("out") => out = Some(PathBuf::from(parser.value()?)),
             lexopt::Arg::Long("json") => as_json = true,
+            lexopt::Arg::Long("mesh-unit") => mesh_unit = Some(open::mesh_unit(&mut parser)?),
             lexopt::Arg::Long("kind") => {
                 let name = parser.value()?.to_string_lossy().into_owned();
                 kind = ExportKind::from_name(&name)
@@ -76,7 +80,7 @@ fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
         }
     }
     match out {
-        Some(out) if !paths.is_empty() => Ok(Options { paths, out, kind, as_json }),
+        Some(out) if !paths.is_empty() => Ok(Options { paths, out, kind, mesh_unit, as_json }),
         _ => Err(Failure::Usage("render needs an input and --out FOLDER".to_owned())),
     }
 }

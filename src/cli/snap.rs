@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::{Failure, Outcome, open};
 use crate::formats::{Keep, write_document};
+use crate::mesh::MeshUnit;
 use crate::photo::{Pixels, decode};
 use crate::platform;
 use crate::scene::{Annotation, AnnotationState, Object, ObjectId, Photo, PoseSource, Scene};
@@ -19,12 +20,13 @@ struct Options {
     out: Option<PathBuf>,
     /// Names of photos; empty for all.
     photos: Vec<String>,
+    mesh_unit: Option<MeshUnit>,
     as_json: bool,
 }
 
 pub fn run(parser: lexopt::Parser) -> Outcome {
     let options = read_options(parser)?;
-    let mut session = open::open_session(&options.paths)?;
+    let mut session = open::open_session(&options.paths, options.mesh_unit)?;
     let is_wanted = |photo: &&Photo| options.photos.is_empty() || options.photos.contains(&photo.name);
     let scene = session.scene().clone();
     let photos: Vec<&Photo> = scene.photos.iter().filter(is_wanted).collect();
@@ -142,11 +144,13 @@ fn line_of(line: &Value) -> String {
 }
 
 fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
-    let mut options = Options { paths: Vec::new(), out: None, photos: Vec::new(), as_json: false };
+    let mut options =
+        Options { paths: Vec::new(), out: None, photos: Vec::new(), mesh_unit: None, as_json: false };
     while let Some(argument) = parser.next()? {
         match argument {
             lexopt::Arg::Long("out") => options.out = Some(PathBuf::from(parser.value()?)),
             lexopt::Arg::Long("json") => options.as_json = true,
+            lexopt::Arg::Long("mesh-unit") => options.mesh_unit = Some(open::mesh_unit(&mut parser)?),
             lexopt::Arg::Long("photo") => {
                 options.photos.push(parser.value()?.to_string_lossy().into_owned());
             }

@@ -9,7 +9,6 @@ use super::{
     CameraFile, FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose,
 };
 use crate::math::{Pose, PoseError};
-use crate::scene::{AnnotationState, PoseSource};
 
 /// A correction of a rotation by more than this, ‖RᵀR − I‖, is reported.
 const REPORTED_DEFECT: f64 = 1e-3;
@@ -111,15 +110,7 @@ impl Gather {
             self.corrections.worst = self.corrections.worst.max(defect);
         }
         let object = self.object(slot);
-        let pose = IncomingPose {
-            object,
-            camera_from_object: pose,
-            state: AnnotationState::Posed,
-            source: PoseSource::Imported,
-            changed_at_ms: None,
-            score: found.score.filter(|score| score.is_finite()),
-            pins: Vec::new(),
-        };
+        let pose = IncomingPose::foreign(object, pose, found.score);
         self.incoming.photos.get_mut(found.photo)?.poses.push(pose);
         Some(object)
     }

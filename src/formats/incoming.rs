@@ -4,7 +4,7 @@ use glam::DMat4;
 
 use super::{CameraFile, Document, FileKey, FormatError};
 use crate::math::{Intrinsics, Pose};
-use crate::scene::{AnnotationState, CameraOrigin, Pin, PoseSource, Rgb, Symmetries};
+use crate::scene::{AnnotationState, CameraOrigin, MeshAsset, Pin, PoseSource, Rgb, Symmetries};
 
 /// What an import's poses are to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +98,21 @@ pub struct IncomingReference {
     pub poses: Vec<(usize, usize, Pose)>,
 }
 
+impl IncomingPose {
+    /// One from a foreign file: somebody estimated or annotated it, when and how is not known.
+    pub fn foreign(object: usize, camera_from_object: Pose, score: Option<f64>) -> Self {
+        Self {
+            object,
+            camera_from_object,
+            state: AnnotationState::Posed,
+            source: PoseSource::Imported,
+            changed_at_ms: None,
+            score: score.filter(|score| score.is_finite()),
+            pins: Vec::new(),
+        }
+    }
+}
+
 impl IncomingObject {
     pub fn named(key: FileKey) -> Self {
         Self { key, mesh_from_file: None, symmetries: None, look: None }
@@ -123,6 +138,13 @@ impl Incoming {
             self.objects.push(make());
             self.objects.len() - 1
         })
+    }
+
+    /// Does it say how this mesh's file is meant: its unit and its axes?
+    pub fn says_frame_of(&self, mesh: &MeshAsset) -> bool {
+        self.objects
+            .iter()
+            .any(|object| object.mesh_from_file.is_some() && object.key.names_mesh(mesh, false))
     }
 
     pub fn pose_count(&self) -> usize {

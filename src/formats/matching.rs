@@ -1,7 +1,6 @@
 //! Finding the photos and meshes that incoming poses speak of, and giving the poses to the scene.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 use super::file_key::PhotoFinder;
 use super::incoming::PhotoLook;
@@ -205,7 +204,7 @@ fn restore_look(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> O
     let wanted = incoming.mesh_from_file.filter(|wanted| *wanted != object.mesh_from_file)?;
     match object.mesh.with_mesh_from_file(object.mesh_from_file, wanted) {
         Ok(mesh) => {
-            object.mesh = Arc::new(mesh);
+            object.mesh = mesh;
             object.mesh_from_file = wanted;
             None
         }

@@ -145,6 +145,7 @@ pub fn read_mesh_with(
         companions: companions::kept(companions),
         mesh: loaded.mesh,
         bvh,
+        untransformed: None,
     };
     Ok((asset, loaded.warnings))
 }

@@ -23,6 +23,7 @@ mod stl;
 pub(crate) mod test_shapes;
 mod text;
 mod textures;
+mod unit;
 mod weld;
 mod write;
 
@@ -42,6 +43,7 @@ pub use point_tree::PointTree;
 pub use ray_cast::RayHit;
 pub use simplify::simplified;
 pub use textures::MAX_TEXTURE_SIDE_PX;
+pub use unit::{FileUnit, MeshUnit, length_text};
 pub use write::write_ply;
 
 /// A mesh with more triangles, or more vertices, than this is refused: beyond it a browser tab runs out of memory.

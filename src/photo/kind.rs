@@ -16,6 +16,14 @@ pub fn is_picture(bytes: &[u8]) -> bool {
     picture_kind(bytes).is_some()
 }
 
+/// The kind of a picture that is known by name only, and that a browser may read.
+pub fn foreign_kind(bytes: &[u8]) -> Option<&'static str> {
+    match picture_kind(bytes)? {
+        PictureKind::Foreign(name) => Some(name),
+        PictureKind::Read(..) => None,
+    }
+}
+
 pub(super) fn picture_kind(bytes: &[u8]) -> Option<PictureKind> {
     let read = |format, name| Some(PictureKind::Read(format, name));
     match bytes {

@@ -11,7 +11,7 @@ mod thumbnail;
 pub use decode::{MAX_PIXELS, PhotoError, decode, read_header};
 pub use depth::{DepthPixels, decode_depth, is_depth_like};
 pub use encode::{png_gray8, png_gray16, png_rgba};
-pub use kind::is_picture;
+pub use kind::{foreign_kind, is_picture};
 pub use mip::half_size;
 pub use stored::plain_extension;
 pub use thumbnail::thumbnail;

@@ -21,8 +21,8 @@ pub use memory::MemoryStorage;
 pub use native::{
     Background, ExportFolder, FolderStorage, GrowingDownload, default_storage, download, fetch_example,
     memory_bytes, navigation_ms, new_scene_id, now_ms, open_folder, page_parameter, page_version, pick_files,
-    pick_folder, reload, report_crash, send_event, spawn, update_offer, wasm_bytes, watch_dropped_folders,
-    when_left,
+    pick_folder, png_of_foreign, reload, report_crash, send_event, spawn, update_offer, wasm_bytes,
+    watch_dropped_folders, when_left,
 };
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
@@ -37,7 +37,7 @@ pub use time_zone::utc_offset_minutes;
 pub use web::{
     Background, ExportFolder, GrowingDownload, default_storage, download, fetch_example, install_panic_hook,
     memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, pick_folder,
-    reload, report_crash, send_event, spawn, update_offer, wasm_bytes, watch_dropped_folders,
+    png_of_foreign, reload, report_crash, send_event, spawn, update_offer, wasm_bytes, watch_dropped_folders,
     watch_for_updates, when_left,
 };
 

@@ -9,7 +9,7 @@ use sha2::Digest;
 
 use super::CameraOrigin;
 use crate::math::Intrinsics;
-use crate::mesh::{Bvh, Mesh, MeshError};
+use crate::mesh::{Bvh, FileUnit, Mesh, MeshError};
 
 /// The field of view that is assumed where a photo says nothing of its lens.
 const ASSUMED_FIELD_OF_VIEW_RAD: f64 = std::f64::consts::FRAC_PI_3;
@@ -95,10 +95,13 @@ pub struct MeshAsset {
     pub companions: Vec<CompanionFile>,
     pub mesh: Mesh,
     pub bvh: Bvh,
+    /// The mesh as its file has it, where this one is transformed: going back loses no digit.
+    pub untransformed: Option<Arc<Self>>,
 }
 
 impl MeshAsset {
-    /// What mesh and search tree take in memory, roughly: positions, triangles, attributes and two tree nodes a triangle.
+    /// What mesh and search tree take in memory, roughly: positions, triangles, attributes and two tree nodes a triangle; of
+    /// what it was made from, nothing.
     pub fn memory_bytes(&self) -> usize {
         const BYTES_PER_VERTEX: usize = 12 + 12 + 4;
         const BYTES_PER_TRIANGLE: usize = 12 + 2 * 32;
@@ -106,17 +109,36 @@ impl MeshAsset {
         vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE
     }
 
+    /// What the file says of the unit of its numbers.
+    pub fn file_unit(&self) -> FileUnit {
+        FileUnit::of(&self.bytes)
+    }
+
     /// The same file under another transform from its numbers to the `object` frame.
-    pub fn with_mesh_from_file(&self, present: DMat4, wanted: DMat4) -> Result<Self, MeshError> {
-        let mesh = self.mesh.transformed(&DAffine3::from_mat4(wanted * present.inverse()))?;
-        Ok(Self {
+    pub fn with_mesh_from_file(
+        self: &Arc<Self>,
+        present: DMat4,
+        wanted: DMat4,
+    ) -> Result<Arc<Self>, MeshError> {
+        // Only a mesh that nobody has transformed yet has no other behind it.
+        let (source, present) = match &self.untransformed {
+            Some(source) => (source, DMat4::IDENTITY),
+            None => (self, present),
+        };
+        if wanted == present {
+            return Ok(source.clone());
+        }
+        let transform = DAffine3::from_mat4(wanted * present.inverse());
+        let mesh = source.mesh.transformed(&transform)?;
+        Ok(Arc::new(Self {
             file_name: self.file_name.clone(),
             sha256: self.sha256,
             bytes: self.bytes.clone(),
             companions: self.companions.clone(),
-            bvh: Bvh::build(&mesh),
+            bvh: source.bvh.transformed(&transform).unwrap_or_else(|| Bvh::build(&mesh)),
             mesh,
-        })
+            untransformed: Some(source.clone()),
+        }))
     }
 }
 

@@ -17,6 +17,7 @@ impl Session {
             Command::OpenDataset(import) => Ok(self.open_dataset(*import, now_ms)),
             Command::Open(opening) => Ok(self.open(*opening, now_ms)),
             Command::Answer(answer) => self.answer(answer, now_ms),
+            Command::AnswerUnit(unit) => self.answer_unit(unit),
             Command::RenameScene(name) => {
                 self.rename_scene(&name);
                 Ok(Vec::new())

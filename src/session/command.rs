@@ -9,6 +9,7 @@ use super::{
     Answer, Batch, CommandId, DatasetImport, HalfPin, LogEntry, Nudge, NudgeSettings, Opening, Panes, Tool,
 };
 use crate::math::{Intrinsics, Pose};
+use crate::mesh::MeshUnit;
 use crate::scene::{
     CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, Pin, PoseSource,
     Rgb,
@@ -30,6 +31,8 @@ pub enum Command {
     /// A data set in place of this one.
     OpenDataset(Box<DatasetImport>),
     Answer(Answer),
+    /// The unit of the meshes that [`super::Session::unit_question`] asks about.
+    AnswerUnit(MeshUnit),
     /// What the scene is called; no undo step.
     RenameScene(String),
 
@@ -164,6 +167,10 @@ pub enum ObjectChange {
     Visible(bool),
     Locked(bool),
     MeshFrame(MeshFrame),
+    /// The unit of its file's numbers, for all objects of that file.
+    MeshUnit(MeshUnit),
+    /// Which of its file's axes (0 to 2) points up, for all objects of that file.
+    UpAxis(usize),
 }
 
 #[derive(Debug, Clone, PartialEq)]

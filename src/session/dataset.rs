@@ -38,6 +38,7 @@ impl Session {
         (self.photo, self.selected) = (None, None);
         self.also_selected.clear();
         self.questions.clear();
+        self.unit_questions.clear();
         self.waiting.clear();
         self.log = Log::default();
 
@@ -50,7 +51,11 @@ impl Session {
                 object.name.clone_from(&mesh.name);
             }
         }
-        let mut effects = self.take_all_poses(&dataset, poses_as, now_ms);
+        let mut new: Vec<ObjectId> = self.scene.objects.iter().map(|object| object.id).collect();
+        let setting = [dataset.setting()];
+        new.retain(|id| !self.is_told_frame(*id, &setting) && !self.is_told_frame(*id, &dataset.poses));
+        let mut effects = self.give_units(&new);
+        effects.extend(self.take_all_poses(&dataset, poses_as, now_ms));
         self.add_dataset_masks(&dataset, &photos, &images, &mut misfits);
         self.photo = self.scene.photos.first().map(|photo| photo.id);
         self.place_start_poses(now_ms);

@@ -5,9 +5,7 @@ use std::sync::Arc;
 use super::apply::Applied;
 use super::{BurstKey, CommandError, Effect, MaskChange, Notice, ObjectChange, PhotoChange, Session};
 use crate::math::Pose;
-use crate::scene::{
-    Annotation, AnnotationState, DepthMap, MaskId, MeshFrame, Object, ObjectId, PhotoAsset, PhotoId,
-};
+use crate::scene::{Annotation, AnnotationState, DepthMap, MaskId, Object, ObjectId, PhotoAsset, PhotoId};
 
 /// A duplicate is put beside its original by this part of its radius.
 const DUPLICATE_OFFSET: f64 = 0.5;
@@ -52,6 +50,8 @@ impl Session {
         self.scene.object(id).ok_or(CommandError::NoObject(id))?;
         let (label, for_all) = match &change {
             ObjectChange::MeshFrame(frame) => return self.set_mesh_frame(id, *frame),
+            ObjectChange::MeshUnit(unit) => return self.set_mesh_unit(id, *unit),
+            ObjectChange::UpAxis(axis) => return self.set_up_axis(id, *axis),
             ObjectChange::Name(_) => ("Rename object", false),
             ObjectChange::Color(_) => ("Object colour", false),
             ObjectChange::Opacity(_) => ("Object opacity", true),
@@ -85,32 +85,6 @@ impl Session {
                 MaskChange::Opacity(opacity) => mask.opacity = opacity.clamp(0.0, 1.0),
                 MaskChange::Visible(visible) => mask.visible = visible,
                 MaskChange::Object(object) => mask.object = object,
-            }
-        })
-    }
-
-    /// Mirrors or spaces an object's mesh; poses stay as they are.
-    fn set_mesh_frame(&mut self, id: ObjectId, frame: MeshFrame) -> Applied {
-        let object = self.scene.object(id).ok_or(CommandError::NoObject(id))?;
-        let frame = MeshFrame::checked(frame.0)?;
-        let mesh = object
-            .mesh
-            .with_mesh_from_file(object.mesh_from_file, frame.0)
-            .map_err(|error| CommandError::Failed(error.to_string()))?;
-        let mesh = Arc::new(mesh);
-        let new_from_old = frame.0 * object.mesh_from_file.inverse();
-        let symmetries = object.symmetries.of_transformed(&new_from_old);
-        self.change("Mirror or space mesh", |scene| {
-            if let Some(object) = scene.object_mut(id) {
-                object.symmetries = symmetries;
-                object.mesh = mesh;
-                object.mesh_from_file = frame.0;
-            }
-            for ((_, object), annotation) in &mut scene.annotations {
-                if *object == id {
-                    annotation.pins =
-                        annotation.pins.iter().map(|pin| pin.of_transformed(&new_from_old)).collect();
-                }
             }
         })
     }
@@ -205,6 +179,6 @@ fn change_object(object: &mut Object, change: &ObjectChange) {
         ObjectChange::Opacity(opacity) => object.opacity = opacity.clamp(0.0, 1.0),
         ObjectChange::Visible(visible) => object.visible = *visible,
         ObjectChange::Locked(locked) => object.locked = *locked,
-        ObjectChange::MeshFrame(_) => {}
+        ObjectChange::MeshFrame(_) | ObjectChange::MeshUnit(_) | ObjectChange::UpAxis(_) => {}
     }
 }

@@ -105,8 +105,8 @@ impl Notice {
 /// What the user has to decide before an import goes on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Question {
-    /// Are these poses to go on from, or to compare with?
-    PosesAs(Incoming),
+    /// Are these poses to go on from, or to compare with? One choice for all files of a drop.
+    PosesAs(Vec<Incoming>),
     /// The camera is for an image of another size than the photos'.
     CameraSize { file: CameraFile, photos: Vec<PhotoId> },
 }

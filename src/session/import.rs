@@ -44,20 +44,24 @@ impl Session {
         if let Some(first) = new_photos.first() {
             self.photo = Some(*first);
         }
-        self.add_meshes(&batch, now_ms);
+        let mut effects = self.add_meshes(&batch, now_ms);
         for camera in batch.cameras {
             self.take_camera(camera, &new_photos);
         }
 
-        let mut effects = self.retry_waiting(now_ms);
+        effects.extend(self.retry_waiting(now_ms));
+        let mut asked = Vec::new();
         for incoming in batch.poses {
             match batch.poses_as {
                 _ if incoming.pose_count() == 0 && incoming.references.is_empty() => {
                     effects.extend(self.take_poses(incoming, PosesAs::Annotations, now_ms));
                 }
                 Some(poses_as) => effects.extend(self.take_poses(incoming, poses_as, now_ms)),
-                None => self.questions.push(Question::PosesAs(incoming)),
+                None => asked.push(incoming),
             }
+        }
+        if !asked.is_empty() {
+            self.questions.push(Question::PosesAs(asked));
         }
         self.keep_selection_valid();
         self.record_imports(&before.scene);
@@ -83,23 +87,30 @@ impl Session {
 
     /// Adds each new mesh as an object. It is placed in the photo that is shown, unless the same drop brings poses: they say
     /// where it belongs.
-    fn add_meshes(&mut self, batch: &Batch, now_ms: f64) {
+    fn add_meshes(&mut self, batch: &Batch, now_ms: f64) -> Vec<Effect> {
+        let mut new = Vec::new();
         for mesh in &batch.meshes {
             let known = self.scene.objects.iter().find(|object| object.mesh.sha256 == mesh.sha256);
             let known = known.map(|object| object.id);
             let id = match known {
                 Some(id) => id,
-                None => self.scene.add_object(mesh.clone()),
+                None => {
+                    let id = self.scene.add_object(mesh.clone());
+                    new.push(id);
+                    id
+                }
             };
             self.complete_mesh(id, mesh);
             self.selected = Some(id);
         }
+        new.retain(|id| !self.is_told_frame(*id, &batch.poses));
+        let effects = self.give_units(&new);
         let waits_for_poses =
             !batch.poses.is_empty() || self.waiting.iter().any(|w| w.incoming.pose_count() > 0);
         if waits_for_poses {
-            return;
+            return effects;
         }
-        let Some(photo) = self.photo else { return };
+        let Some(photo) = self.photo else { return effects };
         // Objects that came before any photo are placed with the first one.
         let unplaced: Vec<_> = self.scene.objects.iter().map(|object| object.id).collect();
         for id in unplaced {
@@ -107,6 +118,7 @@ impl Session {
                 self.scene.place(photo, id, now_ms);
             }
         }
+        effects
     }
 
     /// A mesh that came without its textures gets them when it is loaded again together with them.
@@ -119,7 +131,7 @@ impl Session {
             again.clone()
         } else {
             match again.with_mesh_from_file(DMat4::IDENTITY, object.mesh_from_file) {
-                Ok(mesh) => Arc::new(mesh),
+                Ok(mesh) => mesh,
                 Err(_) => return,
             }
         };
@@ -172,9 +184,11 @@ impl Session {
         effects
     }
 
-    /// How many of a file's poses find their photos and meshes in the scene.
-    pub fn count_fitting_poses(&self, incoming: &Incoming) -> usize {
-        incoming.apply(&mut self.scene.clone(), PosesAs::Reference, 0.0).applied
+    /// How many of some files' poses find their photos and meshes in the scene.
+    pub fn count_fitting_poses(&self, files: &[Incoming]) -> usize {
+        let fitting =
+            |incoming: &Incoming| incoming.apply(&mut self.scene.clone(), PosesAs::Reference, 0.0).applied;
+        files.iter().map(fitting).sum()
     }
 
     pub(super) fn wait_for(&mut self, outcome: Outcome, poses_as: PosesAs) {
@@ -246,8 +260,9 @@ impl Session {
         let before = self.snapshot();
         let effects = match (&question, answer) {
             (_, Answer::Refuse) => Vec::new(),
-            (Question::PosesAs(incoming), Answer::UsePosesAs(poses_as)) => {
-                self.take_poses(incoming.clone(), poses_as, now_ms)
+            (Question::PosesAs(files), Answer::UsePosesAs(poses_as)) => {
+                let files = files.iter().cloned();
+                files.flat_map(|incoming| self.take_poses(incoming, poses_as, now_ms)).collect()
             }
             (Question::CameraSize { file, photos }, Answer::ScaleCamera) => {
                 self.scale_camera(file, photos);
@@ -301,6 +316,7 @@ impl Session {
         restore_depth_maps(&mut scene, document, &opening.photos);
         self.scene = scene;
         self.questions.clear();
+        self.unit_questions.clear();
         self.waiting.clear();
         self.log = Log::default();
         self.look = document.view.look();
@@ -376,20 +392,17 @@ fn notify_warning(file_name: &str, text: &str) -> Effect {
 }
 
 fn describe(incoming: &Incoming, poses_as: PosesAs, outcome: &Outcome) -> Notice {
+    let (name, count, all) = (&incoming.file_name, outcome.applied, incoming.pose_count());
     let what = match poses_as {
+        _ if all == 0 => return describe_without_poses(incoming, outcome),
         PosesAs::Annotations => "used as annotations",
         PosesAs::Reference => "kept as a reference",
     };
-    let (name, count, all) = (&incoming.file_name, outcome.applied, incoming.pose_count());
     let plural = if all == 1 { "" } else { "s" };
     if outcome.missing.is_empty() {
         return Notice::info(format!("{name}: {count} pose{plural} {what}"));
     }
-    let shown: Vec<&str> = outcome.missing.iter().take(4).map(String::as_str).collect();
-    let mut files = shown.join(", ");
-    if outcome.missing.len() > shown.len() {
-        files += &format!(" and {} more", outcome.missing.len() - shown.len());
-    }
+    let files = missing_files(outcome);
     if count == 0 {
         Notice::warning(format!(
             "{name}: its poses wait for their photos and meshes. Drop these files too: {files}"
@@ -397,4 +410,34 @@ fn describe(incoming: &Incoming, poses_as: PosesAs, outcome: &Outcome) -> Notice
     } else {
         Notice::info(format!("{name}: {count} of {all} pose{plural} {what}, the others wait for {files}"))
     }
+}
+
+/// Of a file of cameras, or of objects that were never posed.
+fn describe_without_poses(incoming: &Incoming, outcome: &Outcome) -> Notice {
+    let name = &incoming.file_name;
+    let cameras = incoming.photos.iter().filter(|photo| photo.camera.is_some()).count();
+    let what = match (cameras, outcome.missing.is_empty()) {
+        (0, _) => "no poses in it".to_owned(),
+        // The user is asked what is to become of them.
+        _ if !outcome.differing_cameras.is_empty() => "a camera for a photo of another size".to_owned(),
+        (1, true) => "1 camera taken over".to_owned(),
+        (_, true) => format!("{cameras} cameras taken over"),
+        (1, false) => "1 camera in it".to_owned(),
+        (_, false) => format!("{cameras} cameras in it"),
+    };
+    if outcome.missing.is_empty() {
+        Notice::info(format!("{name}: {what}"))
+    } else {
+        Notice::info(format!("{name}: {what}. It waits for {}", missing_files(outcome)))
+    }
+}
+
+/// The first few files that are still to come.
+fn missing_files(outcome: &Outcome) -> String {
+    let shown: Vec<&str> = outcome.missing.iter().take(4).map(String::as_str).collect();
+    let mut files = shown.join(", ");
+    if outcome.missing.len() > shown.len() {
+        files += &format!(" and {} more", outcome.missing.len() - shown.len());
+    }
+    files
 }

@@ -14,6 +14,7 @@ mod export;
 mod history;
 mod import;
 mod log;
+mod mesh_frames;
 mod nudge;
 mod pins;
 mod pose;
@@ -30,6 +31,7 @@ pub use effect::{Answer, Effect, Notice, Pick, PictureKind, PictureRequest, Ques
 pub use history::MAX_BYTES as HISTORY_BYTES;
 pub use import::{Batch, Opening};
 pub use log::LogEntry;
+pub use mesh_frames::UnitQuestion;
 pub use nudge::{Nudge, NudgeFrame, NudgeSettings};
 pub use pins::{HalfPin, PinReport};
 pub use table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
@@ -60,6 +62,8 @@ pub struct Session {
     gesture: Option<Gesture>,
     burst: Option<Burst>,
     questions: Vec<Question>,
+    /// Whose unit was guessed and may be wrong.
+    unit_questions: Vec<UnitQuestion>,
     /// Poses and cameras whose photos or meshes have not come yet.
     waiting: Vec<Waiting>,
     revision: u64,

@@ -12,17 +12,18 @@ pub const BUTTON_SIZE: Vec2 = Vec2::new(108.0, 30.0);
 /// How many of a question's poses fit, and the state of the scene that this was counted for.
 #[derive(Debug, Default)]
 pub struct FitCount {
-    counted: Option<(String, u64, usize)>,
+    counted: Option<(Vec<String>, u64, usize)>,
 }
 
 impl FitCount {
-    fn of(&mut self, session: &Session, incoming: &Incoming) -> usize {
+    fn of(&mut self, session: &Session, asked: &[Incoming]) -> usize {
         let revision = session.revision();
+        let names = || asked.iter().map(|incoming| &incoming.file_name);
         match &self.counted {
-            Some((file, at, count)) if *file == incoming.file_name && *at == revision => *count,
+            Some((files, at, count)) if files.iter().eq(names()) && *at == revision => *count,
             _ => {
-                let count = session.count_fitting_poses(incoming);
-                self.counted = Some((incoming.file_name.clone(), revision, count));
+                let count = session.count_fitting_poses(asked);
+                self.counted = Some((names().cloned().collect(), revision, count));
                 count
             }
         }
@@ -65,8 +66,8 @@ fn ask(
     let modal = Modal::new(Id::unique("question")).frame(frame).show(ctx, |ui| {
         ui.set_width(430.0_f32.min(ui.ctx().content_rect().width() - 64.0));
         match question {
-            Question::PosesAs(incoming) => {
-                poses_question(ui, incoming, fit_count.of(session, incoming), commands);
+            Question::PosesAs(asked) => {
+                poses_question(ui, asked, fit_count.of(session, asked), commands);
             }
             Question::CameraSize { file, photos } => {
                 let photo = photos.first().and_then(|id| session.scene().photo(*id));
@@ -81,12 +82,27 @@ fn ask(
     }
 }
 
-fn poses_question(ui: &mut Ui, incoming: &Incoming, fitting: usize, commands: &mut Vec<Command>) {
-    let count = incoming.pose_count();
+fn poses_question(ui: &mut Ui, asked: &[Incoming], fitting: usize, commands: &mut Vec<Command>) {
+    const MOST_NAMED: usize = 4;
+    let count: usize = asked.iter().map(Incoming::pose_count).sum();
     let poses = if count == 1 { "1 pose".to_owned() } else { format!("{count} poses") };
-    ui.heading(format!("{poses} in {}", incoming.file_name));
+    match asked {
+        [alone] => ui.heading(format!("{poses} in {}", alone.file_name)),
+        _ => ui.heading(format!("{poses} in {} files", asked.len())),
+    };
     ui.add_space(4.0);
+    if asked.len() > 1 {
+        for incoming in asked.iter().take(MOST_NAMED) {
+            ui.add(egui::Label::new(format!("{}: {}", incoming.file_name, incoming.pose_count())).truncate());
+        }
+        if asked.len() > MOST_NAMED {
+            ui.label(format!("and {} more files", asked.len() - MOST_NAMED));
+        }
+        ui.add_space(4.0);
+    }
     let verb = if fitting == 1 { "fits" } else { "fit" };
+    let leave_out =
+        if asked.len() == 1 { "Leave this file out. (Esc)" } else { "Leave these files out. (Esc)" };
     ui.label(match fitting {
         0 => "None fits your files yet: they wait until their photos and meshes come.".to_owned(),
         _ => format!("{fitting} of {count} {verb} your files."),
@@ -98,7 +114,7 @@ fn poses_question(ui: &mut Ui, incoming: &Incoming, fitting: usize, commands: &m
     let compare = "Truth or another's poses, to compare with. Read-only.";
     primary_answer(ui, "Start poses", "My poses: I go on from them. (Enter)", annotations, commands);
     answer(ui, Button::new("Reference"), compare, reference, commands);
-    answer(ui, Button::new("Cancel"), "Leave this file out. (Esc)", Answer::Refuse, commands);
+    answer(ui, Button::new("Cancel"), leave_out, Answer::Refuse, commands);
 }
 
 fn camera_question(

@@ -21,6 +21,7 @@ mod layers;
 mod linemod;
 mod looks;
 mod mesh_corpus;
+mod mesh_units;
 mod opening;
 mod panels;
 mod program;

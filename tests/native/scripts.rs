@@ -170,6 +170,45 @@ fn poses_are_asked_about_and_can_be_a_reference() {
 }
 
 #[test]
+fn files_of_poses_that_come_together_are_asked_about_once() {
+    let mut session = small_session();
+    let truth = format!("{CAMERA_JSON}\nbox <-> photo\n1 0 0 5\n0 1 0 6\n0 0 1 700\n0 0 0 1\n");
+    let scored = "scene_id,im_id,obj_id,score,R,t,time\n1,0,1,0.75,1 0 0 0 1 0 0 0 1,5 6 710,-1\n";
+    let files =
+        [text_file("truth.txt", &truth), text_file("other.txt", &truth), text_file("scored.csv", scored)];
+    drop_files(&mut session, &files, None);
+    let Some(Question::PosesAs(asked)) = session.question() else { panic!("no question") };
+    let names: Vec<&str> = asked.iter().map(|incoming| incoming.file_name.as_str()).collect();
+    assert_eq!(names, ["truth.txt", "other.txt", "scored.csv"]);
+    assert_eq!(asked[2].photos[0].poses[0].score, Some(0.75));
+    assert_eq!(session.count_fitting_poses(asked), 2);
+    run(&mut session, Command::Answer(Answer::UsePosesAs(PosesAs::Reference)));
+    assert!(session.question().is_none(), "one choice for all");
+    let names: Vec<&str> =
+        session.scene().references.iter().map(|reference| reference.name.as_str()).collect();
+    assert_eq!(names, ["truth", "other"]);
+    assert_eq!(session.missing_files().map(|(file, _)| file).collect::<Vec<_>>(), ["scored.csv"]);
+    run(&mut session, Command::Run(CommandId::Undo));
+    assert!(session.scene().references.is_empty(), "and one step");
+}
+
+#[test]
+fn a_file_of_cameras_alone_is_not_told_as_poses() {
+    let mut session = Session::default();
+    drop_files(&mut session, &[flat_photo("000000.png", 640, 480), box_mesh("box.obj")], None);
+    let cameras = r#"{"0": {"cam_K": [520.5, 0, 301.75, 0, 533.25, 222.5, 0, 0, 1], "depth_scale": 1.0}}"#;
+    let effects = drop_files(&mut session, &[text_file("scene_camera.json", cameras)], None);
+    let said: Vec<String> = effects
+        .iter()
+        .filter_map(
+            |effect| if let Effect::Notify(notice) = effect { Some(notice.text.clone()) } else { None },
+        )
+        .collect();
+    assert_eq!(said, ["scene_camera.json: 1 camera taken over"]);
+    assert_eq!(session.photo().unwrap().camera.fx, 520.5);
+}
+
+#[test]
 fn a_session_replays_exactly() {
     let play = || {
         let mut session = small_session();

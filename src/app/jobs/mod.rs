@@ -402,6 +402,7 @@ fn read_mesh_reply(file: &NamedFile, companions: &[NamedFile], reader: &mut Read
         companions: kept(companions),
         mesh: Mesh::new(data).ok()?,
         bvh,
+        untransformed: None,
     };
     Some(Done::Mesh(Arc::new(asset), warnings.lines().map(str::to_owned).collect()))
 }

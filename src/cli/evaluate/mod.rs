@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use super::{Failure, Outcome, open};
 use crate::formats::{Incoming, PosesAs};
+use crate::mesh::MeshUnit;
 use crate::metrics::{PoseSet, annotated_poses, compare};
 use crate::scene::Scene;
 
@@ -20,15 +21,16 @@ enum Style {
 struct Options {
     truth: Vec<PathBuf>,
     poses: Vec<PathBuf>,
+    mesh_unit: Option<MeshUnit>,
     style: Style,
 }
 
 pub fn run(parser: lexopt::Parser) -> Outcome {
-    let Options { mut truth, poses, style } = read_options(parser)?;
+    let Options { mut truth, poses, mesh_unit, style } = read_options(parser)?;
     let estimates = poses::read_poses(&poses)?;
     // Photos and meshes may lie with either side; they are the same.
     truth.extend(estimates.other_files);
-    let session = open::open_session(&truth)?;
+    let session = open::open_session(&truth, mesh_unit)?;
     for (file, missing) in session.missing_files() {
         eprintln!("pinpose: {file}: left out what is in {}: not among the files", missing.join(", "));
     }
@@ -59,10 +61,11 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
 }
 
 fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
-    let mut options = Options { truth: Vec::new(), poses: Vec::new(), style: Style::Text };
+    let mut options = Options { truth: Vec::new(), poses: Vec::new(), mesh_unit: None, style: Style::Text };
     while let Some(argument) = parser.next()? {
         match argument {
             lexopt::Arg::Long("truth") => options.truth.push(parser.value()?.into()),
+            lexopt::Arg::Long("mesh-unit") => options.mesh_unit = Some(open::mesh_unit(&mut parser)?),
             lexopt::Arg::Long("json") => options.style = Style::Json,
             lexopt::Arg::Long("csv") => options.style = Style::Csv,
             lexopt::Arg::Value(path) => options.poses.push(path.into()),

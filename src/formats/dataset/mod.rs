@@ -219,8 +219,10 @@ impl Dataset {
             })
         });
         incoming.photos = cameras.collect();
+        // All layouts but the loose folder fix the unit: what they do not transform is in millimetres.
+        let fixed = (self.kind != DatasetKind::Folder).then_some(DMat4::IDENTITY);
         let meshes = self.meshes.iter().map(|mesh| IncomingObject {
-            mesh_from_file: mesh.mesh_from_file,
+            mesh_from_file: mesh.mesh_from_file.or(fixed),
             symmetries: Some(mesh.symmetries.clone()).filter(|symmetries| !symmetries.is_empty()),
             ..IncomingObject::named(FileKey::Path(mesh.path.clone()))
         });

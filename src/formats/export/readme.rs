@@ -2,6 +2,8 @@
 
 use super::ExportPart;
 use super::plan::Plan;
+use crate::mesh::MeshUnit;
+use crate::scene::MeshFrame;
 
 pub(super) fn readme(plan: &Plan, warnings: &[String]) -> String {
     let words = plan.options.convention.words();
@@ -15,7 +17,8 @@ pub(super) fn readme(plan: &Plan, warnings: &[String]) -> String {
     if has(ExportPart::Document) {
         lines.push(
             "pinpose.json: everything, in PinPose's own format. camera_from_object (X_camera = R X_object + t), OpenCV camera \
-             axes (x right, y down, z forward), millimetres, matrices row by row. Opens in PinPose again, bit for bit."
+             axes (x right, y down, z forward), millimetres, matrices row by row. Opens in PinPose again, bit for bit. The units \
+             and axes of mesh files are in mesh_from_file."
                 .to_owned(),
         );
     }
@@ -36,6 +39,14 @@ pub(super) fn readme(plan: &Plan, warnings: &[String]) -> String {
     }
     if has(ExportPart::Meshes) {
         lines.push("meshes/: PLY, millimetres, in the object frame that all poses here refer to.".to_owned());
+    }
+    for object in &plan.scene.objects {
+        let frame = MeshFrame(object.mesh_from_file);
+        match frame.unit(object.mesh.file_unit()) {
+            Some(MeshUnit::Millimetre) => {}
+            Some(unit) => lines.push(format!("{} was read in {unit}.", object.mesh.file_name)),
+            None => lines.push(format!("{} was read in a unit of its own.", object.mesh.file_name)),
+        }
     }
     if [ExportPart::Masks, ExportPart::VisibleMasks, ExportPart::Depth, ExportPart::Nocs, ExportPart::Boxes]
         .into_iter()

@@ -6,7 +6,6 @@ use crate::formats::{
     camera,
 };
 use crate::math::Pose;
-use crate::scene::{AnnotationState, PoseSource};
 
 /// Rotations in these files are printed with eight digits; a correction above this is reported.
 const REPORTED_DEFECT: f64 = 1e-3;
@@ -72,15 +71,7 @@ fn finish(incoming: &mut Incoming, camera: &CameraFile, entry: Option<Entry<'_>>
     }
     let object =
         incoming.object_with(|| IncomingObject::named(FileKey::Stem(entry.object.to_owned())), entry.object);
-    let pose = IncomingPose {
-        object,
-        camera_from_object: pose,
-        state: AnnotationState::Posed,
-        source: PoseSource::Imported,
-        changed_at_ms: None,
-        score: None,
-        pins: Vec::new(),
-    };
+    let pose = IncomingPose::foreign(object, pose, None);
     let key = FileKey::Stem(entry.photo.to_owned());
     match incoming.photos.iter_mut().find(|photo| photo.key == key) {
         Some(photo) => photo.poses.push(pose),

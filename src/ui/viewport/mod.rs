@@ -9,6 +9,7 @@ mod paint;
 mod photo;
 mod pins;
 mod scene;
+mod unit_question;
 
 use egui::{CursorIcon, Id, Rect, Response, Sense, Ui, Vec2};
 
@@ -97,6 +98,7 @@ pub fn draw(
         around,
         asked,
     );
+    unit_question::draw(ui, whole, session, &mut asked.commands);
     if around.files_hover {
         let stroke = egui::Stroke::new(3.0, theme::ACCENT);
         ui.painter().rect_stroke(whole.shrink(6.0), 10.0, stroke, egui::StrokeKind::Inside);

@@ -7,6 +7,7 @@ mod expert;
 mod idle;
 mod large;
 mod masks;
+mod open_meaning;
 mod path;
 mod pixels;
 mod safety;
@@ -77,6 +78,8 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "dataset-thousand", datasets::thousand_frames).long(),
     Flow::on(WEBGL, "bad-input", bad_input::bad_files),
     Flow::on(WEBGL, "bad-calls", bad_input::bad_calls),
+    Flow::on(WEBGL, "mesh-units", open_meaning::mesh_units),
+    Flow::on(WEBGL, "foreign-photos", open_meaning::foreign_photos),
     Flow::on(WEBGL, "offline", safety::offline),
     Flow::on(WEBGL, "crash", safety::crash),
     Flow::on(WEBGL, "scenes", scenes::scenes),
