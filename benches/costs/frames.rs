@@ -181,7 +181,15 @@ fn picture(mesh: &Arc<MeshAsset>, mode: OverlayMode) -> Picture {
 fn asset(mesh: Mesh) -> Arc<MeshAsset> {
     let bvh = Bvh::build(&mesh);
     let (file_name, bytes) = ("sheet".to_owned(), Arc::from([]));
-    Arc::new(MeshAsset { file_name, sha256: Sha256::of(b"sheet"), bytes, companions: Vec::new(), mesh, bvh })
+    Arc::new(MeshAsset {
+        file_name,
+        sha256: Sha256::of(b"sheet"),
+        bytes,
+        companions: Vec::new(),
+        mesh,
+        bvh,
+        drawn: Default::default(),
+    })
 }
 
 /// User and system time of all threads, in steps of 10 ms; Linux only.

@@ -9,7 +9,7 @@ use sha2::Digest;
 
 use super::CameraOrigin;
 use crate::math::Intrinsics;
-use crate::mesh::{Bvh, Mesh, MeshError};
+use crate::mesh::{Bvh, DrawnAhead, Mesh, MeshError};
 
 /// The field of view that is assumed where a photo says nothing of its lens.
 const ASSUMED_FIELD_OF_VIEW_RAD: f64 = std::f64::consts::FRAC_PI_3;
@@ -95,6 +95,8 @@ pub struct MeshAsset {
     pub companions: Vec<CompanionFile>,
     pub mesh: Mesh,
     pub bvh: Bvh,
+    /// For whoever draws it first.
+    pub drawn: DrawnAhead,
 }
 
 impl MeshAsset {
@@ -116,6 +118,7 @@ impl MeshAsset {
             companions: self.companions.clone(),
             bvh: Bvh::build(&mesh),
             mesh,
+            drawn: DrawnAhead::default(),
         })
     }
 }

@@ -153,6 +153,7 @@ pub fn disc(radius_mm: f32) -> Arc<MeshAsset> {
         companions: Vec::new(),
         mesh,
         bvh,
+        drawn: Default::default(),
     })
 }
 

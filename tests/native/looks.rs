@@ -33,7 +33,15 @@ fn camera() -> Intrinsics {
 fn asset(mesh: Mesh) -> Arc<MeshAsset> {
     let bvh = Bvh::build(&mesh);
     let (file_name, bytes) = ("shape".to_owned(), Arc::from([]));
-    Arc::new(MeshAsset { file_name, sha256: Sha256::of(b"shape"), bytes, companions: Vec::new(), mesh, bvh })
+    Arc::new(MeshAsset {
+        file_name,
+        sha256: Sha256::of(b"shape"),
+        bytes,
+        companions: Vec::new(),
+        mesh,
+        bvh,
+        drawn: Default::default(),
+    })
 }
 
 fn box_data() -> MeshData {
