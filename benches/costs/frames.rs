@@ -189,6 +189,7 @@ fn asset(mesh: Mesh) -> Arc<MeshAsset> {
         mesh,
         bvh,
         untransformed: None,
+        drawn: Default::default(),
     })
 }
 

@@ -19,6 +19,8 @@ use crate::ui::Saving;
 const QUIET_MS: f64 = 250.0;
 /// ...or at the latest after so long.
 const LATEST_MS: f64 = 800.0;
+/// What could not be stored is tried again after so long: there may be room by then.
+const RETRY_MS: f64 = 15_000.0;
 
 pub struct Autosave {
     /// Shared with what is called when the page goes, and with a save that runs.
@@ -49,8 +51,8 @@ struct Keeper {
     seen: Option<Seen>,
     /// The revision that is in storage.
     saved_revision: u64,
-    /// The revision that could not be stored: it is tried again with the next change, not in a loop.
-    failed_revision: Option<u64>,
+    /// The revision that could not be stored, and when that was: it is tried again with the next change, or later.
+    failed: Option<(u64, f64)>,
     /// `changed_at_ms` of what is stored under `id`.
     stored_ms: Option<f64>,
     saving: bool,
@@ -78,7 +80,7 @@ impl Autosave {
             id,
             seen: None,
             saved_revision: 0,
-            failed_revision: None,
+            failed: None,
             stored_ms: None,
             saving: false,
             held: false,
@@ -101,7 +103,8 @@ impl Autosave {
     /// Looks at the session, and saves when it is time to.
     pub fn tick(&mut self, ctx: &egui::Context, session: &Session, now_ms: f64) {
         self.notice_changes(session, now_ms);
-        if !self.keeper.borrow().may_save() {
+        if !self.keeper.borrow().may_save(now_ms) {
+            self.keeper.borrow().wait_to_retry(now_ms);
             return;
         }
         if self.keeper.borrow().is_lent {
@@ -120,10 +123,15 @@ impl Autosave {
     /// Saves at once what is not saved yet, after the save that runs.
     pub fn save_now(&mut self, session: &Session, now_ms: f64) {
         self.notice_changes(session, now_ms);
-        self.keeper.borrow_mut().failed_revision = None;
-        if self.keeper.borrow().may_save() && !self.keeper.borrow().is_lent {
+        self.try_again();
+        if self.keeper.borrow().may_save(now_ms) && !self.keeper.borrow().is_lent {
             save(&self.keeper);
         }
+    }
+
+    /// What could not be saved may find room now.
+    pub fn try_again(&mut self) {
+        self.keeper.borrow_mut().failed = None;
     }
 
     /// Is everything that is worth it in storage?
@@ -153,7 +161,7 @@ impl Autosave {
         keeper.stored_ms = stored_ms;
         keeper.seen = None;
         keeper.saved_revision = session.settled_revision();
-        keeper.failed_revision = None;
+        keeper.failed = None;
         keeper.held = false;
         keeper.is_lent = false;
         keeper.is_trial = false;
@@ -213,16 +221,28 @@ impl Keeper {
         self.seen.as_ref().filter(|seen| seen.revision != self.saved_revision).filter(is_work)
     }
 
-    fn may_save(&self) -> bool {
-        let is_new = |seen: &Seen| Some(seen.revision) != self.failed_revision;
-        !self.held && !self.saving && self.unsaved().is_some_and(is_new)
+    fn may_save(&self, now_ms: f64) -> bool {
+        let has_just_failed = |seen: &Seen| {
+            self.failed
+                .is_some_and(|(revision, at_ms)| revision == seen.revision && now_ms < at_ms + RETRY_MS)
+        };
+        !self.held && !self.saving && self.unsaved().is_some_and(|seen| !has_just_failed(seen))
+    }
+
+    fn wait_to_retry(&self, now_ms: f64) {
+        if let Some((_, at_ms)) =
+            self.failed.filter(|_| !self.held && !self.saving && self.unsaved().is_some())
+        {
+            let left_ms = (at_ms + RETRY_MS - now_ms).max(0.0);
+            self.ctx.request_repaint_after(Duration::from_secs_f64(left_ms / 1000.0));
+        }
     }
 
     fn take_result(&mut self, revision: u64, changed_at_ms: f64, result: Result<SaveOutcome, String>) {
         self.saving = false;
-        self.failure = None;
-        self.failed_revision = None;
-        self.finished = Some(match result {
+        let failed_before = self.failed.take().map(|(revision, _)| revision);
+        let failure_before = self.failure.take();
+        let finished = match result {
             Ok(SaveOutcome::Saved) => {
                 self.saved_revision = revision;
                 let first = self.stored_ms.replace(changed_at_ms).is_none();
@@ -230,15 +250,18 @@ impl Keeper {
                 Finished::Saved { first }
             }
             Ok(SaveOutcome::ChangedElsewhere) => {
-                self.failed_revision = Some(revision);
+                self.failed = Some((revision, platform::now_ms()));
                 Finished::ChangedElsewhere
             }
             Err(reason) => {
-                self.failed_revision = Some(revision);
+                self.failed = Some((revision, platform::now_ms()));
                 self.failure = Some(reason.clone());
                 Finished::Failed(reason)
             }
-        });
+        };
+        // What was tried again by itself, in vain, was said before.
+        let was_said = failed_before == Some(revision) && failure_before == self.failure;
+        self.finished = Some(finished).filter(|_| !was_said);
         self.ctx.request_repaint();
     }
 }
@@ -255,7 +278,7 @@ fn leave(keeper: &Rc<RefCell<Keeper>>) {
         let journal = Journal { changed_at_ms: platform::now_ms(), json };
         keeper_now.storage.write_journal(&keeper_now.id, &journal);
     }
-    let may_save = keeper_now.may_save();
+    let may_save = keeper_now.may_save(platform::now_ms());
     drop(keeper_now);
     if may_save {
         save(keeper);

@@ -130,6 +130,11 @@ impl PinPose {
         platform::send_event("notice", &notice.text);
         self.ui_state.toasts.add(notice);
     }
+
+    fn notify_with_offer(&mut self, notice: Notice, offer: ui::Offer) {
+        platform::send_event("notice", &notice.text);
+        self.ui_state.toasts.add_with_offer(notice, offer);
+    }
 }
 
 impl eframe::App for PinPose {

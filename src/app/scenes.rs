@@ -9,9 +9,13 @@ use std::rc::Rc;
 use super::PinPose;
 use super::autosave::Finished;
 use crate::interact::Hands;
-use crate::platform::{self, Saved, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture, StorageUse};
+use crate::platform::{
+    self, Remains, Saved, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture, StorageUse,
+};
 use crate::session::{Command, Notice, Session};
-use crate::ui::{Saving, SceneRequest};
+use crate::ui::{Offer, Saving, SceneRequest};
+
+mod damaged;
 
 /// Scenes and what is being done with them.
 pub struct Scenes {
@@ -50,13 +54,18 @@ enum Next {
 enum Arrived {
     StartWith(Option<SceneId>),
     Loaded(SceneId, Option<Saved>),
-    CannotLoad(String),
+    /// Of which scene; `None` where it is not known which was open last.
+    CannotLoad(Option<SceneId>, String),
+    /// A scene's title, and what is stored of it.
+    Remains(String, Remains),
     Listed(Vec<SceneSummary>),
     Usage(StorageUse),
     /// Whether this window is the one that writes the scene.
     Claimed(SceneId, bool),
-    /// A scene was renamed, copied or deleted.
+    /// A scene was renamed or copied.
     Changed,
+    /// A scene was deleted: there may be room again.
+    Deleted,
     Problem(String),
 }
 
@@ -159,7 +168,8 @@ impl PinPose {
                 self.scenes.opening = Some(Incoming::default());
                 self.autosave.hold();
                 let last = self.scenes.storage.last_open();
-                self.scenes.when_done(last, Arrived::StartWith, Arrived::CannotLoad);
+                let failed = |problem| Arrived::CannotLoad(None, problem);
+                self.scenes.when_done(last, Arrived::StartWith, failed);
             }
         }
     }
@@ -252,6 +262,7 @@ impl PinPose {
             SceneRequest::Duplicate(id) => self.duplicate_scene(id),
             SceneRequest::Delete(id) => self.delete_scene(id),
             SceneRequest::SaveAs(name) => self.save_scene_as(&name),
+            SceneRequest::DownloadStored(id) => self.download_stored(&id),
         }
     }
 
@@ -272,11 +283,11 @@ impl PinPose {
         self.go_on();
     }
 
-    /// The scene that was on its way in is in the session; `is_whole` if all of its files could be read.
+    /// The scene that was on its way in is in the session; `is_whole` if all of its files were there and could be read.
     pub(super) fn scene_opened(&mut self, is_whole: bool) {
         let Some(incoming) = self.scenes.opening.take() else { return };
         let has_come = incoming.is_empty || !self.session.scene().is_empty();
-        match incoming.id.filter(|_| is_whole && has_come) {
+        match incoming.id.clone().filter(|_| is_whole && has_come) {
             Some(id) => {
                 self.scenes.remember(&id);
                 self.autosave.begin(id, Some(incoming.stored_ms), &self.session);
@@ -285,7 +296,13 @@ impl PinPose {
                 }
             }
             // What is stored stays as it is, for a program that can read it.
-            None => self.autosave.begin(platform::new_scene_id(), None, &self.session),
+            None => {
+                if let Some(id) = incoming.id.filter(|_| is_whole && !has_come) {
+                    let problem = "This scene cannot be opened. It stays stored as it is".to_owned();
+                    self.notify_damaged(id, problem);
+                }
+                self.autosave.begin(platform::new_scene_id(), None, &self.session);
+            }
         }
         self.claim_scene();
     }
@@ -307,12 +324,13 @@ impl PinPose {
         if self.scenes.next.is_none() || self.scenes.opening.is_some() || self.autosave.is_saving() {
             return;
         }
-        let is_deleted = self.scenes.next == Some(Next::Delete(self.autosave.id()));
-        if !is_deleted && !self.autosave.is_saved() {
+        // Deleting another scene may be what makes room for this one.
+        let is_deleting = matches!(self.scenes.next, Some(Next::Delete(_)));
+        if !is_deleting && !self.autosave.is_saved() {
             if matches!(self.autosave.state(&self.session), Saving::Failed(_)) {
                 self.scenes.next = None;
                 let text = "This scene cannot be saved, so it stays open. Download the workspace to keep it";
-                self.notify(Notice::error(text));
+                self.notify_with_offer(Notice::error(text), Offer::Workspace);
                 return;
             }
             self.autosave.save_now(&self.session, platform::now_ms());
@@ -339,7 +357,9 @@ impl PinPose {
 
     fn load_scene(&mut self, id: SceneId) {
         let loading = self.scenes.storage.load(&id);
-        self.scenes.when_done(loading, move |saved| Arrived::Loaded(id, saved), Arrived::CannotLoad);
+        let of = id.clone();
+        let failed = move |problem| Arrived::CannotLoad(Some(of), problem);
+        self.scenes.when_done(loading, move |saved| Arrived::Loaded(id, saved), failed);
     }
 
     fn begin_new(&mut self) {
@@ -367,8 +387,7 @@ impl PinPose {
             self.begin_new();
         }
         let deleting = self.scenes.storage.delete(id);
-        self.scenes.when_done(deleting, |()| Arrived::Changed, Arrived::Problem);
-        self.scenes.refresh_usage();
+        self.scenes.when_done(deleting, |()| Arrived::Deleted, Arrived::Problem);
     }
 
     fn fresh_session(&mut self) {
@@ -387,15 +406,24 @@ impl PinPose {
                 self.scene_opened(false);
                 self.scenes.refresh();
             }
-            Arrived::CannotLoad(problem) => {
-                self.notify(Notice::error(problem));
+            Arrived::CannotLoad(id, problem) => {
+                match id {
+                    Some(id) => self.notify_damaged(id, problem),
+                    None => self.notify(Notice::error(problem)),
+                }
                 self.scene_opened(false);
             }
+            Arrived::Remains(title, remains) => self.download_remains(&title, remains),
             Arrived::Listed(list) => self.scenes.list = list,
             Arrived::Usage(usage) => self.scenes.usage = Some(usage),
             Arrived::Claimed(id, false) if id == self.autosave.id() => self.borrow_scene(),
             Arrived::Claimed(..) => {}
             Arrived::Changed => self.scenes.refresh(),
+            Arrived::Deleted => {
+                self.scenes.refresh();
+                self.scenes.refresh_usage();
+                self.autosave.try_again();
+            }
             Arrived::Problem(problem) => self.notify(Notice::error(problem)),
         }
     }
@@ -418,8 +446,12 @@ impl PinPose {
             return;
         }
         if let Err(error) = self.loading.start_saved(stored, name) {
-            let title = heading.title();
-            self.notify(Notice::error(format!("{title} cannot be opened: {error}")));
+            let text = format!("{} cannot be opened: {error}", heading.title());
+            let id = self.scenes.opening.as_ref().and_then(|incoming| incoming.id.clone());
+            match id {
+                Some(id) => self.notify_damaged(id, text),
+                None => self.notify(Notice::error(text)),
+            }
             self.scene_opened(false);
         }
     }
@@ -437,9 +469,8 @@ impl PinPose {
             Finished::Failed(reason) => {
                 self.scenes.says_saved = false;
                 let reason = reason.trim_end_matches('.');
-                self.notify(Notice::error(format!(
-                    "Not saved: {reason}. Download the workspace to keep your work"
-                )));
+                let text = format!("Not saved: {reason}. Download the workspace to keep your work");
+                self.notify_with_offer(Notice::error(text), Offer::Workspace);
             }
         }
     }

@@ -26,11 +26,14 @@ pub struct Archive {
 
 impl Archive {
     pub fn open(bytes: Arc<[u8]>) -> Result<Self, FormatError> {
+        let packed_bytes = bytes.len() as u64;
         let zip = ZipArchive::new(Cursor::new(bytes)).map_err(damaged)?;
         if zip.len() > MAX_FILES {
             return Err(FormatError::Archive(format!("it has more than {MAX_FILES} files")));
         }
-        Ok(Self { zip, bytes_left: MAX_ALL_BYTES })
+        // Files are read again and again, but not a small archive into all of the memory.
+        let most = packed_bytes.saturating_mul(MAX_RATIO).clamp(2 * HARMLESS_BYTES, MAX_ALL_BYTES);
+        Ok(Self { zip, bytes_left: most })
     }
 
     /// Is it one that this program saved?
@@ -66,12 +69,14 @@ impl Archive {
             return Err(at(format!("{packed} bytes would unpack to {declared}, which is not done")));
         }
         let allowed = declared.min(self.bytes_left);
-        let mut content = Vec::new();
+        let mut content = Vec::with_capacity(allowed.min(HARMLESS_BYTES) as usize);
         // The declared size may lie; what is read cannot.
         let read = entry.take(allowed + 1).read_to_end(&mut content);
         let length = read.map_err(|error| at(error.to_string()))? as u64;
         if length > allowed && allowed < declared {
-            return Err(FormatError::Archive(format!("it unpacks to more than {} GiB", MAX_ALL_BYTES >> 30)));
+            return Err(FormatError::Archive(
+                "all that was read of it is too much for what it is".to_owned(),
+            ));
         }
         if length != declared {
             return Err(at(format!("{declared} bytes announced, but not what is there")));

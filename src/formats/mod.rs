@@ -42,7 +42,7 @@ pub use kind::{FileKind, classify};
 pub use matching::Outcome;
 pub use pins::{positive_number, read_pins, write_pins};
 pub use pose_text::{PoseText, read_pose_text, write_pose_text};
-pub use workspace::{Workspace, read_workspace, write_workspace};
+pub use workspace::{DOCUMENT_NAME, Workspace, read_workspace, write_workspace, zip_of_files};
 
 /// A file as it came from a drop, a picker, an archive or the command line.
 #[derive(Debug, Clone)]
@@ -146,6 +146,7 @@ pub fn read_mesh_with(
         mesh: loaded.mesh,
         bvh,
         untransformed: None,
+        drawn: crate::mesh::DrawnAhead::default(),
     };
     Ok((asset, loaded.warnings))
 }

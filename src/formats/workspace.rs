@@ -15,10 +15,13 @@ use super::{
 use crate::scene::Scene;
 
 /// Where the document is in the archive.
-const DOCUMENT_NAME: &str = "scene.json";
+pub const DOCUMENT_NAME: &str = "scene.json";
 
-/// All files of an archive together may not unpack to more.
+/// All files of an archive together may not unpack to more...
 const MAX_UNPACKED_BYTES: u64 = 512 << 20;
+/// ...nor to so many times the archive, which no photos and meshes do, if that is more than what any archive may.
+const MAX_RATIO: u64 = 100;
+const HARMLESS_BYTES: u64 = 64 << 20;
 
 /// An opened archive: the document, and the files that it speaks of still as bytes.
 #[derive(Debug, Clone)]
@@ -55,26 +58,42 @@ pub fn write_workspace(document: &Document, scene: &Scene) -> Result<Vec<u8>, Fo
     Ok(writer.finish().map_err(archive)?.into_inner())
 }
 
+/// A zip of files as they are, by their paths.
+pub fn zip_of_files(files: &[(String, Arc<[u8]>)]) -> Result<Vec<u8>, FormatError> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    for (path, bytes) in files {
+        let started = writer.start_file(path, options);
+        started.map_err(|error| FormatError::Archive(error.to_string()))?;
+        writer.write_all(bytes).map_err(|error| FormatError::Archive(error.to_string()))?;
+    }
+    let cursor = writer.finish().map_err(|error| FormatError::Archive(error.to_string()))?;
+    Ok(cursor.into_inner())
+}
+
 /// Unpacks an archive within bounds.
 pub fn read_workspace(bytes: &[u8]) -> Result<Workspace, FormatError> {
     let damaged = |error: zip::result::ZipError| FormatError::Archive(error.to_string());
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(damaged)?;
     let mut document = None;
     let mut files: Vec<(String, NamedFile)> = Vec::new();
-    let mut budget = MAX_UNPACKED_BYTES;
+    let most = (bytes.len() as u64).saturating_mul(MAX_RATIO).clamp(HARMLESS_BYTES, MAX_UNPACKED_BYTES);
+    let mut budget = most;
     for index in 0..archive.len() {
         let entry = archive.by_index(index).map_err(damaged)?;
         if entry.is_dir() {
             continue;
         }
         let name = entry.name().map_err(damaged)?.into_owned();
-        let mut content = Vec::new();
+        let too_much = || FormatError::Archive(format!("it unpacks to more than {} MiB", most >> 20));
+        if entry.size() > budget {
+            return Err(too_much());
+        }
+        let mut content = Vec::with_capacity(entry.size() as usize);
         // The declared size may lie; what is read cannot.
         let read = entry.take(budget + 1).read_to_end(&mut content);
         let length = read.map_err(|error| FormatError::Archive(format!("{name}: {error}")))? as u64;
-        budget = budget.checked_sub(length).ok_or_else(|| {
-            FormatError::Archive(format!("it unpacks to more than {} MiB", MAX_UNPACKED_BYTES >> 20))
-        })?;
+        budget = budget.checked_sub(length).ok_or_else(too_much)?;
         if name == DOCUMENT_NAME {
             document = Some(read_document(&content)?);
         } else {

@@ -16,7 +16,7 @@ const FROM_TRIANGLES: usize = 150_000;
 /// Cells along the largest side: a closed surface of any shape has some ten times their square of triangles at most.
 const CELLS: f64 = 150.0;
 
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CoarseMesh {
     pub mesh: Mesh,
     /// The side of a cell.

@@ -5,6 +5,7 @@
 mod bvh;
 mod coarse;
 mod companions;
+mod drawn;
 mod edges;
 mod error;
 mod gltf;
@@ -34,6 +35,7 @@ use crate::math::{BoundingSphere, Bounds};
 pub use bvh::Bvh;
 pub use coarse::{CoarseMesh, coarse_mesh};
 pub use companions::{FindCompanion, companion_key, companion_names, no_companions};
+pub use drawn::{DrawnAhead, DrawnMesh};
 pub use edges::{MeshEdges, mesh_edges};
 pub use error::{Format, MeshError, Place};
 pub use load::{LoadedMesh, load};

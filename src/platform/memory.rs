@@ -53,6 +53,11 @@ impl MemoryStorage {
         self.held_elsewhere.borrow_mut().insert(id.clone());
     }
 
+    /// The content of this file is stored no more, as when a disk is damaged.
+    pub fn lose(&self, file_name: &str) {
+        self.kept.borrow_mut().assets.retain(|_, asset| asset.file_name != file_name);
+    }
+
     /// The content of how many files is stored.
     pub fn asset_count(&self) -> usize {
         self.kept.borrow().assets.len()

@@ -29,8 +29,8 @@ pub use page_api::{
 };
 pub use preferences::{keep_preferences_in_memory, read_preference, write_preference};
 pub use storage::{
-    Journal, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary,
-    Storage, StorageFuture, StorageUse,
+    Journal, Remains, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId,
+    SceneSummary, Storage, StorageFuture, StorageUse,
 };
 pub use time_zone::utc_offset_minutes;
 #[cfg(target_arch = "wasm32")]

@@ -73,6 +73,23 @@ pub struct Saved {
     pub companions: Vec<SavedCompanion>,
 }
 
+/// What is stored of a scene, in whatever state it is: for who cannot open it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Remains {
+    pub json: Option<String>,
+    pub assets: Vec<SavedAsset>,
+    pub companions: Vec<SavedCompanion>,
+    /// Records that are not what they should be, by a name for each, as text.
+    pub unreadable: Vec<(String, String)>,
+}
+
+impl From<Saved> for Remains {
+    fn from(saved: Saved) -> Self {
+        let Saved { json, assets, companions, .. } = saved;
+        Self { json: Some(json), assets, companions, unreadable: Vec::new() }
+    }
+}
+
 /// A file that an asset asks for: a mesh's texture. Its content is stored as an asset's is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SavedCompanion {
@@ -166,7 +183,14 @@ pub trait Storage {
     /// All scenes, the one that was changed last first.
     fn list(&self) -> StorageFuture<Vec<SceneSummary>>;
 
+    /// Files that are missing, or cannot be read, are left out.
     fn load(&self, id: &SceneId) -> StorageFuture<Option<Saved>>;
+
+    /// All that is there of a scene, also where [`Self::load`] fails.
+    fn remains(&self, id: &SceneId) -> StorageFuture<Remains> {
+        let loading = self.load(id);
+        Box::pin(async { Ok(loading.await?.map(Remains::from).unwrap_or_default()) })
+    }
 
     /// Replaces what is saved; files that are there already are not written again, files that no scene needs go.
     fn save(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> StorageFuture<SaveOutcome>;

@@ -10,7 +10,7 @@ use super::lines::EdgeInstance;
 use super::surfaces::Surfaces;
 use super::uniforms::draws_edges;
 use super::{Gpu, Usage, ViewSlot};
-use crate::mesh::{CoarseMesh, Mesh, ShadingGroup, ShadingVertex, coarse_mesh, mesh_edges, shading_vertices};
+use crate::mesh::{CoarseMesh, DrawnMesh, Mesh, ShadingGroup, ShadingMesh, ShadingVertex, mesh_edges};
 use crate::scene::{MeshAsset, OverlayMode};
 
 /// A mesh that none of a view's last so many pictures has shown, nor any other view's, is dropped.
@@ -126,13 +126,14 @@ impl Kept {
         let textures = mesh.mesh.paint().map_or(&[][..], |paint| &paint.textures);
         let textures: Vec<_> =
             textures.iter().map(|pixels| surfaces.of_texture(gpu, usage, pixels)).collect();
-        let coarse = coarse_mesh(&mesh.mesh).map(|coarse| {
-            let buffers = upload(gpu, usage, &coarse.mesh, &textures);
+        let drawn = mesh.drawn.take().unwrap_or_else(|| DrawnMesh::of(&mesh.mesh));
+        let coarse = drawn.coarse.map(|(coarse, shading)| {
+            let buffers = upload(gpu, usage, &shading, &textures);
             (coarse, buffers)
         });
         Self {
             mesh: mesh.clone(),
-            buffers: upload(gpu, usage, &mesh.mesh, &textures),
+            buffers: upload(gpu, usage, &drawn.shading, &textures),
             coarse,
             last_pictures: [None; ViewSlot::COUNT],
         }
@@ -167,8 +168,7 @@ impl VertexAttributes {
     }
 }
 
-fn upload(gpu: &Gpu, usage: &Usage, mesh: &Mesh, textures: &[wgpu::BindGroup]) -> MeshBuffers {
-    let shading = shading_vertices(mesh);
+fn upload(gpu: &Gpu, usage: &Usage, shading: &ShadingMesh, textures: &[wgpu::BindGroup]) -> MeshBuffers {
     let group = |group: &ShadingGroup| SurfaceGroup {
         indices: group.indices.clone(),
         texture: group.texture.and_then(|texture| textures.get(texture as usize)).cloned(),

@@ -9,7 +9,7 @@ use sha2::Digest;
 
 use super::CameraOrigin;
 use crate::math::Intrinsics;
-use crate::mesh::{Bvh, FileUnit, Mesh, MeshError};
+use crate::mesh::{Bvh, DrawnAhead, FileUnit, Mesh, MeshError};
 
 /// The field of view that is assumed where a photo says nothing of its lens.
 const ASSUMED_FIELD_OF_VIEW_RAD: f64 = std::f64::consts::FRAC_PI_3;
@@ -97,6 +97,8 @@ pub struct MeshAsset {
     pub bvh: Bvh,
     /// The mesh as its file has it, where this one is transformed: going back loses no digit.
     pub untransformed: Option<Arc<Self>>,
+    /// For whoever draws it first.
+    pub drawn: DrawnAhead,
 }
 
 impl MeshAsset {
@@ -138,6 +140,7 @@ impl MeshAsset {
             bvh: source.bvh.transformed(&transform).unwrap_or_else(|| Bvh::build(&mesh)),
             mesh,
             untransformed: Some(source.clone()),
+            drawn: DrawnAhead::default(),
         }))
     }
 }

@@ -295,7 +295,8 @@ impl Session {
         self.finish_gesture();
         let before = self.snapshot();
         let document = &opening.document;
-        let incoming = match Incoming::from_document(&document.name, document) {
+        let title = if document.name.is_empty() { "This scene" } else { &document.name };
+        let incoming = match Incoming::from_document(title, document) {
             Ok(incoming) => incoming,
             Err(error) => return vec![Effect::Notify(Notice::error(error.to_string()))],
         };

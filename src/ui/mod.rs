@@ -28,7 +28,7 @@ use crate::interact::{Hands, SceneMove};
 use crate::math::Pose;
 use crate::platform::{SceneId, SceneSummary, StorageUse};
 use crate::scene::{ObjectId, PhotoId};
-use crate::session::{Command, Effect, Session};
+use crate::session::{Command, CommandId, Effect, Session};
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
 pub use export_dialog::ExportRequest;
@@ -38,7 +38,7 @@ pub use scenes_dialog::SceneRequest;
 pub use shortcuts::{Pressed, is_released, pressed_commands, shortcut_text};
 pub use theme::apply_theme;
 pub use thumbnails::{MOST_SIDE_PX as THUMBNAIL_SIDE_PX, Thumbnails};
-pub use toasts::Toasts;
+pub use toasts::{Offer, Toasts};
 pub use viewport::{SharedRenderer, ViewportPlace};
 
 /// What the interface keeps for itself between frames.
@@ -216,6 +216,10 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
         dataset_dialog::draw(ui.ctx(), dataset, &mut asked.dataset_requests);
     }
     scenes_dialog::draw(ui.ctx(), around, &mut state.scenes_dialog, &mut asked.scene_requests);
-    state.toasts.draw(ui.ctx());
+    match state.toasts.draw(ui.ctx()) {
+        Some(Offer::Workspace) => asked.commands.push(Command::Run(CommandId::ExportWorkspace)),
+        Some(Offer::Stored(id)) => asked.scene_requests.push(SceneRequest::DownloadStored(id)),
+        None => {}
+    }
     asked
 }

@@ -21,6 +21,8 @@ pub enum SceneRequest {
     Delete(SceneId),
     /// Go on in a copy under this name.
     SaveAs(String),
+    /// What is stored of it, as a file, in whatever state it is.
+    DownloadStored(SceneId),
 }
 
 /// From so many scenes on there is a field to search in.

@@ -4,6 +4,7 @@ use egui::{Align2, Area, Id, Order, Sense, Vec2};
 
 use super::icons::{Icon, icon_button};
 use super::theme;
+use crate::platform::SceneId;
 use crate::session::{Notice, Severity};
 
 /// Seconds that a message of no concern stays.
@@ -18,17 +19,36 @@ pub struct Toasts {
     shown: Vec<Toast>,
 }
 
+/// The way out that a message offers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Offer {
+    /// A file with the open scene and everything in it.
+    Workspace,
+    /// What is stored of a scene, as a file.
+    Stored(SceneId),
+}
+
 #[derive(Debug)]
 struct Toast {
     notice: Notice,
+    offer: Option<Offer>,
     /// Seconds of the interface's clock; unset until it is first drawn.
     expires: Option<f64>,
 }
 
 impl Toasts {
     pub fn add(&mut self, notice: Notice) {
+        self.push(notice, None);
+    }
+
+    /// A message with a button below it.
+    pub fn add_with_offer(&mut self, notice: Notice, offer: Offer) {
+        self.push(notice, Some(offer));
+    }
+
+    fn push(&mut self, notice: Notice, offer: Option<Offer>) {
         self.shown.retain(|toast| toast.notice != notice);
-        self.shown.push(Toast { notice, expires: None });
+        self.shown.push(Toast { notice, offer, expires: None });
         let surplus = self.shown.len().saturating_sub(MOST_SHOWN);
         self.shown.drain(..surplus);
     }
@@ -38,27 +58,31 @@ impl Toasts {
         self.shown.iter().map(|toast| toast.notice.text.as_str())
     }
 
-    pub fn draw(&mut self, ctx: &egui::Context) {
+    /// The offer that was taken. Its message stays: a download may be wanted once more.
+    pub fn draw(&mut self, ctx: &egui::Context) -> Option<Offer> {
         let now = ctx.input(|input| input.time);
         self.expire(ctx, now);
         if self.shown.is_empty() {
-            return;
+            return None;
         }
-        let mut closed = None;
+        let (mut closed, mut taken) = (None, None);
         Area::new(Id::unique("toasts"))
             .order(Order::Foreground)
             .anchor(Align2::RIGHT_BOTTOM, Vec2::new(-14.0, -14.0))
             .show(ctx, |ui| {
                 for (index, toast) in self.shown.iter().enumerate() {
                     // Named by its text: a click is not lost when another message comes or goes between press and release.
-                    if ui.push_id(&toast.notice.text, |ui| draw_one(ui, &toast.notice)).inner {
-                        closed = Some(index);
+                    match ui.push_id(&toast.notice.text, |ui| draw_one(ui, toast)).inner {
+                        Some(Clicked::Close) => closed = Some(index),
+                        Some(Clicked::Offer) => taken.clone_from(&toast.offer),
+                        None => {}
                     }
                 }
             });
         if let Some(index) = closed {
             self.shown.remove(index);
         }
+        taken
     }
 
     fn expire(&mut self, ctx: &egui::Context, now: f64) {
@@ -78,15 +102,19 @@ impl Toasts {
     }
 }
 
-/// Draws one message; true if it was closed.
-fn draw_one(ui: &mut egui::Ui, notice: &Notice) -> bool {
-    let color = match notice.severity {
+enum Clicked {
+    Close,
+    Offer,
+}
+
+fn draw_one(ui: &mut egui::Ui, toast: &Toast) -> Option<Clicked> {
+    let color = match toast.notice.severity {
         Severity::Info => theme::ACCENT,
         Severity::Warning => theme::WARNING,
         Severity::Error => theme::ERROR,
     };
     let frame = theme::toast_frame(ui.visuals(), color);
-    let mut closed = false;
+    let mut clicked = None;
     frame.show(ui, |ui| {
         ui.set_width(330.0);
         ui.horizontal_top(|ui| {
@@ -94,10 +122,19 @@ fn draw_one(ui: &mut egui::Ui, notice: &Notice) -> bool {
             ui.painter().circle_filled(dot.center(), 4.0, color);
             ui.vertical(|ui| {
                 ui.set_width(268.0);
-                ui.add(egui::Label::new(&notice.text).wrap());
+                ui.add(egui::Label::new(&toast.notice.text).wrap());
+                let words = toast.offer.as_ref().map(|offer| match offer {
+                    Offer::Workspace => "Download everything",
+                    Offer::Stored(_) => "Download what is stored",
+                });
+                if words.is_some_and(|words| ui.add(theme::primary_button(words)).clicked()) {
+                    clicked = Some(Clicked::Offer);
+                }
             });
-            closed = icon_button(ui, Icon::Close, "Close message", "Close", true).clicked();
+            if icon_button(ui, Icon::Close, "Close message", "Close", true).clicked() {
+                clicked = Some(Clicked::Close);
+            }
         });
     });
-    closed
+    clicked
 }

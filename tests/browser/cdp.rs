@@ -102,6 +102,14 @@ impl Browser {
         }
     }
 
+    /// Ends it as a crash or a power cut would: nothing more is written.
+    pub fn kill(&mut self) -> anyhow::Result<()> {
+        // On Unix this is SIGKILL.
+        self.process.kill()?;
+        self.process.wait()?;
+        Ok(())
+    }
+
     /// Calls a method of the browser, or of the page that `session` is attached to, and waits for its result.
     pub fn call(&mut self, session: Option<&str>, method: &str, params: Value) -> anyhow::Result<Value> {
         let id = self.send(session, method, params)?;

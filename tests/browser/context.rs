@@ -37,9 +37,13 @@ impl Context {
     /// The same without waiting. A page that was open is closed first; its storage stays, as it would for a user.
     pub fn open(&mut self, query: &str) -> anyhow::Result<&mut Page> {
         self.page = None;
-        let url = format!("{}?renderer={}&{query}", self.url, self.backend.name());
-        let page = Page::open(self.backend, &self.folder, url.trim_end_matches('&'))?;
+        let page = Page::open(self.backend, &self.folder, &self.address(query))?;
         Ok(self.page.insert(page))
+    }
+
+    /// The address of the page with this query, on the run's backend.
+    pub fn address(&self, query: &str) -> String {
+        format!("{}?renderer={}&{query}", self.url, self.backend.name()).trim_end_matches('&').to_owned()
     }
 
     /// The page that was opened last.

@@ -26,6 +26,9 @@ pub struct Page {
     finished_downloads: Vec<String>,
 }
 
+/// A tab that the page is not in at the moment.
+pub struct Tab(String);
+
 impl Page {
     /// Opens `url` in a new browser that keeps its storage in `folder`. The page may still be loading.
     pub fn open(backend: Backend, folder: &Path, url: &str) -> anyhow::Result<Page> {
@@ -46,6 +49,40 @@ impl Page {
 
         let (errors, download_names, finished_downloads) = Default::default();
         let mut page = Page { browser, session, errors, download_folder, download_names, finished_downloads };
+        page.prepare()?;
+        page.navigate(url)?;
+        Ok(page)
+    }
+
+    /// Opens a second tab in the same browser, and goes on there.
+    pub fn open_tab(&mut self, url: &str) -> anyhow::Result<Tab> {
+        // In a window of its own: a tab that is covered does not draw.
+        let create = json!({ "url": "about:blank", "newWindow": true });
+        let target = self.browser.call(None, "Target.createTarget", create)?;
+        let attach = json!({ "targetId": target["targetId"], "flatten": true });
+        let attached = self.browser.call(None, "Target.attachToTarget", attach)?;
+        let session = attached["sessionId"].as_str().context("No session")?.to_owned();
+        let first = Tab(std::mem::replace(&mut self.session, session));
+        self.prepare()?;
+        self.navigate(url)?;
+        Ok(first)
+    }
+
+    /// Goes on in another tab; gives back the one that it was in.
+    pub fn switch_to(&mut self, tab: Tab) -> anyhow::Result<Tab> {
+        let before = Tab(std::mem::replace(&mut self.session, tab.0));
+        self.call("Page.bringToFront", json!({}))?;
+        Ok(before)
+    }
+
+    /// Ends the browser as a crash would.
+    pub fn kill(&mut self) -> anyhow::Result<()> {
+        self.browser.kill()
+    }
+
+    /// Has the tab report what it does, and gives it its size.
+    fn prepare(&mut self) -> anyhow::Result<()> {
+        let page = self;
         for domain in ["Page", "Runtime", "Log"] {
             page.call(&format!("{domain}.enable"), json!({}))?;
         }
@@ -55,8 +92,7 @@ impl Page {
         let (width, height) = SIZE;
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         page.call("Emulation.setDeviceMetricsOverride", metrics)?;
-        page.navigate(url)?;
-        Ok(page)
+        Ok(())
     }
 
     /// Goes to another address in the same tab.

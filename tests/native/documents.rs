@@ -215,3 +215,14 @@ fn every_truncation_and_many_flips_of_a_workspace_are_errors_or_scenes() {
         assert!(read_document(&text.as_bytes()[..length]).is_err());
     }
 }
+
+/// As the first version has written it: a field that came later has to do without being there.
+#[test]
+fn what_the_first_version_has_written_opens() {
+    let text = include_str!("../fuzz/document.json");
+    let document = read_document(text.as_bytes()).unwrap();
+    assert_eq!((document.files().count(), document.pose_count()), (3, 2));
+    assert_eq!(document.name, "Example");
+    let again = write_document(&document);
+    assert_eq!(read_document(again.as_bytes()).unwrap(), document);
+}

@@ -154,6 +154,7 @@ pub fn disc(radius_mm: f32) -> Arc<MeshAsset> {
         mesh,
         bvh,
         untransformed: None,
+        drawn: Default::default(),
     })
 }
 

@@ -222,3 +222,42 @@ fn a_scene_that_cannot_be_read_is_left_as_it_is() {
     assert_eq!(pollster::block_on(storage.load(&scene.id)).unwrap().unwrap(), saved);
     assert_eq!(stored(&storage).len(), 2);
 }
+
+#[test]
+fn a_scene_that_lacks_a_file_is_not_written_over() {
+    let storage = Rc::new(MemoryStorage::default());
+    let mut program = Program::start(&storage);
+    program.load(&[flat_photo("kept.png", 64, 48), flat_photo("lost.png", 32, 24), box_mesh("box.obj")]);
+    drop(program);
+    storage.lose("lost.png");
+    let scene = stored(&storage).remove(0);
+    let before = pollster::block_on(storage.load(&scene.id)).unwrap().unwrap();
+
+    let mut program = Program::start(&storage);
+    let state = program.wait("it is said", |state| {
+        state.notices.iter().any(|notice| notice.contains("lost.png cannot be read from the storage"))
+    });
+    assert!(state.document_json.contains("kept.png"), "what is there is shown");
+    program.harness.get_by_label("Download what is stored");
+    // The poses of the lost photo are still in the stored document: a change must not cost them.
+    program.set_opacity(0.25);
+    assert_eq!(stored(&storage).len(), 2);
+    assert_eq!(pollster::block_on(storage.load(&scene.id)).unwrap().unwrap(), before);
+}
+
+#[test]
+fn deleting_another_scene_makes_room() {
+    let storage = Rc::new(MemoryStorage::default());
+    let (mut program, first, second) = two_scenes(&storage);
+    storage.fail_with(Some("the scene cannot be saved: the browser's storage is full"));
+    program.change_opacity(0.5);
+    program.wait("it is said", |state| state.notices.iter().any(|notice| notice.contains("is full")));
+    program.harness.step();
+    program.harness.get_by_label("Download everything");
+    storage.fail_with(None);
+    program.harness.state_mut().delete_scene(first);
+    let state = program.wait("nothing more has to be done", |state| state.saved);
+    assert!(state.document_json.contains("second.png"));
+    assert_eq!(stored(&storage).len(), 1);
+    assert!(pollster::block_on(storage.load(&second)).unwrap().unwrap().json.contains("0.5"));
+}

@@ -239,3 +239,32 @@ fn preferences_are_apart_from_scenes() {
     write_preference("theme", "light");
     assert_eq!(read_preference("theme").as_deref(), Some("light"));
 }
+
+#[test]
+fn a_damaged_scene_is_no_trouble_for_the_others() {
+    let folder = Folder::new("damaged");
+    let storage = FolderStorage::new(folder.0.clone());
+    let bench = saved("Lab bench", 1000.0, &[asset("aa", b"photo"), asset("bb", b"mesh")]);
+    let table = saved("Table", 2000.0, &[asset("cc", b"photo 2")]);
+    now(storage.save(&id("a"), bench.clone(), SaveTerms::default()));
+    now(storage.save(&id("b"), table.clone(), SaveTerms::default()));
+    std::fs::write(folder.0.join("scenes/b.scene"), "changed_at_ms yesterday").unwrap();
+    assert_eq!(titles(&storage), ["Lab bench", "Damaged scene (b)"]);
+    assert_eq!(now(storage.load(&id("a"))), Some(bench.clone()));
+    let error = pollster::block_on(storage.load(&id("b"))).unwrap_err();
+    assert!(error.contains("cannot be read"), "{error}");
+    assert_eq!(now(storage.remains(&id("b"))).unreadable[0].1, "changed_at_ms yesterday");
+    // What it may need is not removed.
+    now(storage.save(&id("a"), saved("Lab bench", 1000.0, &[asset("aa", b"photo")]), SaveTerms::default()));
+    assert!(folder.0.join("assets/cc").exists() && folder.0.join("assets/bb").exists());
+    now(storage.delete(&id("b")));
+    assert!(!folder.0.join("assets/cc").exists() && !folder.0.join("assets/bb").exists());
+
+    // A file that is missing is left out, and one that was cut is written again.
+    now(storage.save(&id("a"), bench.clone(), SaveTerms::default()));
+    std::fs::write(folder.0.join("assets/aa"), b"ph").unwrap();
+    std::fs::remove_file(folder.0.join("assets/bb")).unwrap();
+    assert_eq!(now(storage.load(&id("a"))).unwrap().assets, [asset("aa", b"ph")]);
+    now(storage.save(&id("a"), bench.clone(), SaveTerms::default()));
+    assert_eq!(now(storage.load(&id("a"))), Some(bench));
+}

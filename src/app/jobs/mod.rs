@@ -3,23 +3,23 @@
 //! Requests and replies cross as bytes, for a page's worker shares no memory with it; natively the same bytes go to a
 //! thread, so that one path is tested.
 
+mod mesh;
 mod solver_mesh;
 mod wire;
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
-use crate::formats::{NamedFile, kept, read_mesh_with, read_photo, read_photo_header};
-use crate::mesh::{Bvh, Material, Mesh, MeshData, Paint};
+use crate::formats::{NamedFile, read_mesh_with, read_photo, read_photo_header};
+use crate::mesh::Mesh;
 use crate::photo::{DepthPixels, Pixels, decode, decode_depth, thumbnail};
 use crate::platform::Background;
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
 use crate::ui::THUMBNAIL_SIDE_PX;
 
+use mesh::{read_mesh_reply, write_mesh};
 use wire::{Reader, Writer};
 
-/// A material without texture, on the wire.
-const NO_TEXTURE: u32 = u32::MAX;
 /// So many jobs are with the worker at once: it always has the next one, and what is cancelled is hardly begun.
 const MOST_SENT: usize = 2;
 
@@ -334,77 +334,6 @@ fn read_depth_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
     let (file_name, bytes) = (file.name.clone(), file.bytes.clone());
     let asset = PhotoAsset { file_name, sha256, bytes, width, height, exif_focal_px: None };
     is_whole.then(|| Done::DepthMap(Arc::new(asset), Arc::new(depth)))
-}
-
-fn write_mesh(asset: &MeshAsset, warnings: &[String]) -> Vec<u8> {
-    let data = asset.mesh.data();
-    let (nodes, order) = asset.bvh.to_parts();
-    let mut writer = Writer::default();
-    writer.bytes(asset.sha256.to_string().as_bytes());
-    writer.items(&data.positions_mm);
-    writer.items(&data.triangles);
-    writer.items(data.normals.as_deref().unwrap_or_default());
-    writer.items(data.colors.as_deref().unwrap_or_default());
-    write_paint(&mut writer, data.paint.as_ref().unwrap_or(&Paint::default()));
-    writer.bytes(nodes);
-    writer.items(order);
-    writer.bytes(warnings.join("\n").as_bytes());
-    writer.finish()
-}
-
-fn write_paint(writer: &mut Writer, paint: &Paint) {
-    writer.items(&paint.corner_uvs);
-    writer.items(&paint.material_of_triangle);
-    let colors: Vec<[u8; 4]> = paint.materials.iter().map(|material| material.base_color).collect();
-    let textures: Vec<u32> =
-        paint.materials.iter().map(|material| material.texture.unwrap_or(NO_TEXTURE)).collect();
-    writer.items(&colors);
-    writer.items(&textures);
-    writer.number(paint.textures.len() as f64);
-    for texture in &paint.textures {
-        writer.number(f64::from(texture.width));
-        writer.number(f64::from(texture.height));
-        writer.bytes(&texture.rgba);
-    }
-}
-
-fn read_paint(reader: &mut Reader<'_>) -> Option<Paint> {
-    let (corner_uvs, material_of_triangle) = (reader.items()?, reader.items()?);
-    let (colors, texture_numbers): (Vec<[u8; 4]>, Vec<u32>) = (reader.items()?, reader.items()?);
-    let materials = colors.into_iter().zip(texture_numbers).map(|(base_color, texture)| Material {
-        base_color,
-        texture: Some(texture).filter(|&texture| texture != NO_TEXTURE),
-    });
-    let texture_count = reader.number()? as usize;
-    let mut textures = Vec::new();
-    for _ in 0..texture_count {
-        let (width, height) = (reader.number()? as u32, reader.number()? as u32);
-        textures.push(Arc::new(Pixels { width, height, rgba: reader.bytes()?.to_vec() }));
-    }
-    Some(Paint { corner_uvs, material_of_triangle, materials: materials.collect(), textures })
-}
-
-fn read_mesh_reply(file: &NamedFile, companions: &[NamedFile], reader: &mut Reader<'_>) -> Option<Done> {
-    let sha256 = read_hash(reader)?;
-    let data = MeshData {
-        positions_mm: reader.items()?,
-        triangles: reader.items()?,
-        normals: Some(reader.items()?).filter(|normals| !normals.is_empty()),
-        colors: Some(reader.items()?).filter(|colors| !colors.is_empty()),
-        paint: Some(read_paint(reader)?).filter(|paint| !paint.materials.is_empty()),
-    };
-    let bvh = Bvh::from_parts(reader.bytes()?, reader.items()?)?;
-    let warnings = String::from_utf8(reader.bytes()?.to_vec()).ok()?;
-    let asset = MeshAsset {
-        file_name: file.name.clone(),
-        sha256,
-        bytes: file.bytes.clone(),
-        companions: kept(companions),
-        mesh: Mesh::new(data).ok()?,
-        bvh,
-        untransformed: None,
-    };
-    Some(Done::Mesh(Arc::new(asset), warnings.lines().map(str::to_owned).collect()))
 }
 
 fn read_hash(reader: &mut Reader<'_>) -> Option<Sha256> {

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::{Arrival, ImagesAs, Load, Origin};
 use crate::app::PinPose;
+use crate::formats::Document;
 use crate::platform::{self, FileBytes, Loaded, PageAnswer};
-use crate::scene::PhotoAsset;
+use crate::scene::{PhotoAsset, Sha256};
 use crate::session::{Batch, Command, Notice, Opening};
 
 impl PinPose {
@@ -71,6 +72,8 @@ impl PinPose {
             let masks = self.take_masks(&mut load);
             let depth = self.take_depth(&mut load);
             let restored = load.is_of(Origin::Storage);
+            let lacks =
+                load.opening.as_ref().map_or_else(Vec::new, |(document, _)| lacking(document, &load.batch));
             let command = match load.opening.take() {
                 Some((document, _)) => Command::Open(Box::new(Opening {
                     document,
@@ -91,7 +94,8 @@ impl PinPose {
             }
             if restored {
                 // What could not be read stays in storage: a change goes into a scene of its own.
-                self.scene_opened(load.problems.is_empty());
+                self.notify_lacking(&lacks, &load.problems);
+                self.scene_opened(load.problems.is_empty() && lacks.is_empty());
             }
             load.warnings.into_iter().for_each(|warning| self.notify(Notice::warning(warning)));
             load.problems.iter().for_each(|problem| self.notify(Notice::error(problem.clone())));
@@ -158,6 +162,16 @@ impl PinPose {
         let shown = self.session.photo().map(|photo| (photo.asset.width, photo.asset.height));
         first_new.or(shown)
     }
+}
+
+/// The files that a document speaks of and that did not come with it.
+fn lacking(document: &Document, batch: &Batch) -> Vec<String> {
+    let is_there = |sha256| {
+        batch.photos.iter().any(|photo| photo.sha256 == sha256)
+            || batch.meshes.iter().any(|mesh| mesh.sha256 == sha256)
+    };
+    let lacks = |(_, sha256): &(&str, Option<Sha256>)| !sha256.is_some_and(is_there);
+    document.files().filter(lacks).map(|(name, _)| name.to_owned()).collect()
 }
 
 /// A drop of masks alone brings nothing else.

@@ -58,6 +58,17 @@ impl Document {
         self.objects.iter().map(|object| object.mesh_sha256.parse().ok())
     }
 
+    /// Name and content of every file that the document speaks of, some more than once.
+    pub fn files(&self) -> impl Iterator<Item = (&str, Option<Sha256>)> {
+        let images = self.photos.iter().flat_map(|photo| {
+            let depth = photo.depth.iter().map(|depth| (&depth.file, &depth.sha256));
+            let masks = photo.masks.iter().map(|mask| (&mask.file, &mask.sha256));
+            std::iter::once((&photo.file, &photo.sha256)).chain(depth).chain(masks)
+        });
+        let meshes = self.objects.iter().map(|object| (&object.mesh_file, &object.mesh_sha256));
+        images.chain(meshes).map(|(name, sha256)| (name.as_str(), sha256.parse().ok()))
+    }
+
     pub fn pose_count(&self) -> usize {
         self.photos.iter().map(|photo| photo.poses.len()).sum()
     }

@@ -16,6 +16,11 @@ use crate::mesh::{FindCompanion, MAX_TRIANGLES, MAX_VERTICES, MeshData, MeshErro
 
 const MM_PER_METRE: f64 = 1000.0;
 
+/// Nodes may draw so many times the vertices that the file has room for, or so many in any case.
+const MOST_COPIES: usize = 20;
+const HARMLESS_VERTICES: usize = 2_000_000;
+const BYTES_OF_A_POSITION: usize = 12;
+
 pub(super) fn flatten(gltf: &Gltf<'_>, find: FindCompanion<'_>) -> Result<Parsed, MeshError> {
     let mut gathered = Gathered::new(Look::new(gltf, find));
     let mut has_skins = false;
@@ -152,6 +157,12 @@ impl<'a> Gathered<'a> {
         let positions = Array::open(gltf, source.positions)?.floats::<3>("positions")?;
         let first_vertex = self.data.positions_mm.len();
         let vertex_count = first_vertex + positions.len();
+        // A node costs a few bytes of the file, and each draws a whole mesh.
+        let file_bytes: usize = gltf.buffers.iter().map(|buffer| buffer.bytes().len()).sum();
+        if vertex_count > HARMLESS_VERTICES.max(file_bytes / BYTES_OF_A_POSITION * MOST_COPIES) {
+            let problem = format!("its nodes draw more than {MOST_COPIES} copies of the file's vertices");
+            return Err(malformed("the scene", problem));
+        }
         if vertex_count > MAX_VERTICES {
             return Err(MeshError::TooLarge { what: "vertices", limit: MAX_VERTICES });
         }

@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::platform::storage::{
-    Journal, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneId, SceneSummary, Storage,
-    StorageFuture, StorageUse, distinct, sort_scenes,
+    Journal, Remains, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneId, SceneSummary,
+    Storage, StorageFuture, StorageUse, distinct, sort_scenes,
 };
 use record::{AssetLine, Record};
 
@@ -69,22 +69,24 @@ impl FolderStorage {
         }
     }
 
-    fn records(&self) -> io::Result<Vec<(SceneId, Record)>> {
+    /// Of each scene, or why it cannot be read.
+    fn records(&self) -> io::Result<Vec<(SceneId, io::Result<Record>)>> {
         let mut records = Vec::new();
         for path in files_in(&self.scenes())? {
             let id = path.file_stem().unwrap_or_default().to_string_lossy();
             if path.extension().is_some_and(|extension| extension == "scene") {
-                records.push((SceneId::new(&id), Record::from_text(&fs::read_to_string(&path)?)?));
+                let record = fs::read_to_string(&path).and_then(|text| Record::from_text(&text));
+                records.push((SceneId::new(&id), record));
             }
         }
         Ok(records)
     }
 
     fn list_now(&self) -> io::Result<Vec<SceneSummary>> {
-        let summary = |(id, record): (SceneId, Record)| SceneSummary {
-            id,
-            bytes: record.bytes(),
-            heading: record.heading,
+        // One that is damaged is listed too: that it cannot be opened is said when it is tried.
+        let summary = |(id, record): (SceneId, io::Result<Record>)| {
+            let record = record.unwrap_or_else(|_| Record::of_damaged(id.as_str()));
+            SceneSummary { id, bytes: record.bytes(), heading: record.heading }
         };
         let mut scenes: Vec<SceneSummary> = self.records()?.into_iter().map(summary).collect();
         sort_scenes(&mut scenes);
@@ -94,16 +96,28 @@ impl FolderStorage {
     fn load_now(&self, id: &SceneId) -> io::Result<Option<Saved>> {
         let Some(record) = self.record(id)? else { return Ok(None) };
         let read = |line: AssetLine| {
-            let bytes = Arc::from(fs::read(self.assets().join(file_name(&line.key)))?);
-            io::Result::Ok(SavedAsset { key: line.key, file_name: line.file_name, bytes })
+            let bytes = Arc::from(fs::read(self.assets().join(file_name(&line.key))).ok()?);
+            Some(SavedAsset { key: line.key, file_name: line.file_name, bytes })
         };
-        let companion = |(of, line)| io::Result::Ok(SavedCompanion { of, file: read(line)? });
+        let companion = |(of, line)| Some(SavedCompanion { of, file: read(line)? });
         Ok(Some(Saved {
             heading: record.heading,
             json: record.json,
-            assets: record.assets.into_iter().map(read).collect::<io::Result<_>>()?,
-            companions: record.companions.into_iter().map(companion).collect::<io::Result<_>>()?,
+            assets: record.assets.into_iter().filter_map(read).collect(),
+            companions: record.companions.into_iter().filter_map(companion).collect(),
         }))
+    }
+
+    /// What can be loaded, or the scene's file as it is.
+    fn remains_now(&self, id: &SceneId) -> io::Result<Remains> {
+        match self.load_now(id) {
+            Ok(saved) => Ok(saved.map(Remains::from).unwrap_or_default()),
+            Err(_) => {
+                let bytes = fs::read(self.scene_path(id))?;
+                let text = String::from_utf8_lossy(&bytes).into_owned();
+                Ok(Remains { unreadable: vec![("scene.txt".to_owned(), text)], ..Remains::default() })
+            }
+        }
     }
 
     fn save_now(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> io::Result<SaveOutcome> {
@@ -113,7 +127,8 @@ impl FolderStorage {
         }
         for file in saved.files() {
             let path = self.assets().join(file_name(&file.key));
-            if !path.exists() {
+            let stored_bytes = fs::metadata(&path).map(|data| data.len());
+            if stored_bytes.ok() != Some(file.bytes.len() as u64) {
                 write_whole(&path, &file.bytes)?;
             }
         }
@@ -154,8 +169,10 @@ impl FolderStorage {
     }
 
     fn remove_unneeded(&self) -> io::Result<()> {
-        let records = self.records()?;
-        let files = records.iter().flat_map(|(_, record)| record.files());
+        let records = self.records()?.into_iter().map(|(_, record)| record);
+        // Whose files these are cannot be told while a scene does not say.
+        let Ok(records) = records.collect::<io::Result<Vec<Record>>>() else { return Ok(()) };
+        let files = records.iter().flat_map(Record::files);
         let needed: BTreeSet<PathBuf> = files.map(|file| self.assets().join(file_name(&file.key))).collect();
         for path in files_in(&self.assets())? {
             if !needed.contains(&path) {
@@ -183,6 +200,10 @@ impl Storage for FolderStorage {
 
     fn load(&self, id: &SceneId) -> StorageFuture<Option<Saved>> {
         done(self.load_now(id), "the saved scene cannot be read")
+    }
+
+    fn remains(&self, id: &SceneId) -> StorageFuture<Remains> {
+        done(self.remains_now(id), "the saved scene cannot be read")
     }
 
     fn save(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> StorageFuture<SaveOutcome> {

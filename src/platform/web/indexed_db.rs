@@ -13,18 +13,18 @@
 mod records;
 
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use idb::builder::{DatabaseBuilder, ObjectStoreBuilder};
-use idb::{Database, Query, Transaction, TransactionMode};
+use idb::{Database, ObjectStore, Query, Transaction, TransactionMode};
 use js_sys::Reflect;
 use wasm_bindgen::prelude::*;
 
 use super::{browser_storage, describe};
 use crate::platform::storage::{
-    Journal, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId, SceneSummary,
-    Storage, StorageFuture, StorageUse, distinct, sort_scenes,
+    Journal, Remains, SaveOutcome, SaveTerms, Saved, SavedAsset, SavedCompanion, SceneHeading, SceneId,
+    SceneSummary, Storage, StorageFuture, StorageUse, distinct, sort_scenes,
 };
 
 const SCENES: &str = "scenes";
@@ -39,9 +39,13 @@ const ONLY_SCENE_OF_VERSION_1: &str = "current";
 
 type Connection = Rc<RefCell<Option<Rc<Database>>>>;
 
+/// Files that were read or written, with their sizes: what is stored under these keys is known.
+type Sound = Rc<RefCell<BTreeMap<String, usize>>>;
+
 #[derive(Default)]
 pub struct IndexedDb {
     connection: Connection,
+    sound: Sound,
 }
 
 impl IndexedDb {
@@ -57,11 +61,19 @@ impl IndexedDb {
             let result = async {
                 let database = open(&connection).await?;
                 let transaction = database.transaction(&ALL, mode)?;
-                let result = work(&transaction).await?;
-                if mode == TransactionMode::ReadWrite {
-                    transaction.commit()?.await?;
+                match work(&transaction).await {
+                    Ok(result) => {
+                        if mode == TransactionMode::ReadWrite {
+                            commit(transaction).await?;
+                        }
+                        Ok(result)
+                    }
+                    Err(error) => {
+                        // All or nothing. Where the browser has given up already, there is nothing to abort.
+                        transaction.abort().ok();
+                        Err(error)
+                    }
                 }
-                Ok(result)
             };
             result.await.map_err(|error| format!("{what}: {}", in_words(&error)))
         })
@@ -98,17 +110,38 @@ impl Storage for IndexedDb {
     }
 
     fn load(&self, id: &SceneId) -> StorageFuture<Option<Saved>> {
+        let (id, sound) = (id.clone(), self.sound.clone());
+        let loading = self.read("the saved scene cannot be read", async move |transaction| {
+            let loaded = load(transaction, &id).await?;
+            if let Ok(Some(saved)) = &loaded {
+                sound.borrow_mut().extend(saved.files().map(size_by_key));
+            }
+            Ok(loaded)
+        });
+        Box::pin(async { loading.await? })
+    }
+
+    fn remains(&self, id: &SceneId) -> StorageFuture<Remains> {
         let id = id.clone();
-        self.read("the saved scene cannot be read", async move |transaction| load(transaction, &id).await)
+        self.read("the saved scene cannot be read", async move |transaction| remains(transaction, &id).await)
     }
 
     fn save(&self, id: &SceneId, saved: Saved, terms: SaveTerms) -> StorageFuture<SaveOutcome> {
         if terms.opens_next {
             browser_storage::write_of_tab(LAST_OPEN, id.as_str());
         }
-        let id = id.clone();
-        self.write("the scene cannot be saved", async move |transaction| {
-            save(transaction, &id, saved, terms).await
+        let (id, sound) = (id.clone(), self.sound.clone());
+        let sizes: Vec<(String, usize)> = saved.files().map(size_by_key).collect();
+        let known = sound.clone();
+        let saving = self.write("the scene cannot be saved", async move |transaction| {
+            save(transaction, &id, saved, terms, &known).await
+        });
+        Box::pin(async move {
+            let outcome = saving.await?;
+            if outcome == SaveOutcome::Saved {
+                sound.borrow_mut().extend(sizes);
+            }
+            Ok(outcome)
         })
     }
 
@@ -201,6 +234,17 @@ impl Storage for IndexedDb {
     }
 }
 
+/// A full disk shows when a transaction is committed: it is aborted then, though every request in it went well.
+async fn commit(transaction: Transaction) -> Result<(), idb::Error> {
+    let of_browser = JsValue::from(transaction);
+    let committing = Transaction::try_from(of_browser.clone())?.commit()?;
+    if committing.await?.is_committed() {
+        return Ok(());
+    }
+    let error = Reflect::get(&of_browser, &"error".into()).and_then(JsCast::dyn_into);
+    Err(error.map_or(idb::Error::DomExceptionNotFound, idb::Error::DomException))
+}
+
 async fn open(connection: &Connection) -> Result<Rc<Database>, idb::Error> {
     if let Some(database) = connection.borrow().as_ref() {
         return Ok(database.clone());
@@ -221,23 +265,26 @@ async fn open(connection: &Connection) -> Result<Rc<Database>, idb::Error> {
         }
     });
     let database = Rc::new(database);
-    give_headings(&database).await?;
+    // What can be read can be opened, also where something else is damaged.
+    if let Err(error) = give_headings(&database).await {
+        log::warn!("not every saved scene has its heading: {error}");
+    }
     *connection.borrow_mut() = Some(database.clone());
     Ok(database)
 }
 
-/// Documents of version 1 become scenes.
+/// Documents of version 1 become scenes, and what lost its heading gets one again.
 async fn give_headings(database: &Database) -> Result<(), idb::Error> {
     let transaction = database.transaction(&ALL, TransactionMode::ReadWrite)?;
     let (scenes, documents) = (transaction.object_store(SCENES)?, transaction.object_store(DOCUMENTS)?);
-    let known = scenes.get_all_keys(None, None)?.await?;
     for id in documents.get_all_keys(None, None)?.await? {
-        if known.contains(&id) {
+        let heading = scenes.get(Query::Key(id.clone()))?.await?;
+        if heading.is_some_and(|heading| records::is_heading(&heading)) {
             continue;
         }
         let Some(document) = documents.get(Query::Key(id.clone()))?.await? else { continue };
         let Some(json) = records::text_field(&document, "json") else { continue };
-        let keys = records::asset_keys(&document);
+        let keys = records::file_keys(&document);
         let mut bytes = json.len() as u64;
         for asset in &keys {
             let stored = transaction.object_store(ASSETS)?.get(Query::Key(asset.as_str().into()))?.await?;
@@ -246,15 +293,21 @@ async fn give_headings(database: &Database) -> Result<(), idb::Error> {
         let heading = records::heading_of_document(&json, super::now_ms());
         scenes.put(&records::scene(&heading, bytes, &keys), Some(&id))?.await?;
     }
-    transaction.commit()?.await?;
-    Ok(())
+    commit(transaction).await
 }
 
-async fn load(transaction: &Transaction, id: &SceneId) -> Result<Option<Saved>, idb::Error> {
+/// The inner error is a sentence: the scene is there, but not in a form that can be opened.
+async fn load(transaction: &Transaction, id: &SceneId) -> Result<Result<Option<Saved>, String>, idb::Error> {
     let scene = transaction.object_store(SCENES)?.get(key(id))?.await?;
     let document = transaction.object_store(DOCUMENTS)?.get(key(id))?.await?;
-    let Some(document) = document else { return Ok(None) };
-    let Some(json) = records::text_field(&document, "json") else { return Ok(None) };
+    if scene.is_none() && document.is_none() {
+        return Ok(Ok(None));
+    }
+    let heading = scene.as_ref().map_or_else(SceneHeading::default, records::heading);
+    let json = document.as_ref().and_then(|document| records::text_field(document, "json"));
+    let (Some(document), Some(json)) = (document, json) else {
+        return Ok(Err(format!("{} cannot be opened: its document is damaged", heading.title())));
+    };
     let store = transaction.object_store(ASSETS)?;
     let mut assets = Vec::new();
     for asset in records::asset_keys(&document) {
@@ -270,8 +323,43 @@ async fn load(transaction: &Transaction, id: &SceneId) -> Result<Option<Saved>, 
             companions.push(SavedCompanion { of, file: SavedAsset { file_name, ..file } });
         }
     }
-    let heading = scene.as_ref().map_or_else(SceneHeading::default, records::heading);
-    Ok(Some(Saved { heading, json, assets, companions }))
+    Ok(Ok(Some(Saved { heading, json, assets, companions })))
+}
+
+/// Takes each record for what it still is.
+async fn remains(transaction: &Transaction, id: &SceneId) -> Result<Remains, idb::Error> {
+    let scene = transaction.object_store(SCENES)?.get(key(id))?.await?;
+    let document = transaction.object_store(DOCUMENTS)?.get(key(id))?.await?;
+    let mut remains = Remains::default();
+    let unreadable = |name: &str, value: &JsValue| (format!("{name}.json"), records::as_text(value));
+    if let Some(document) = &document {
+        remains.json = records::text_field(document, "json");
+        if remains.json.is_none() {
+            remains.unreadable.push(unreadable("document", document));
+        }
+    }
+    if let Some(scene) = scene.as_ref().filter(|scene| !records::is_heading(scene)) {
+        remains.unreadable.push(unreadable("heading", scene));
+    }
+    let companions = document.as_ref().map(records::companions).unwrap_or_default();
+    let mut keys: BTreeSet<String> = scene.iter().chain(&document).flat_map(records::file_keys).collect();
+    let store = transaction.object_store(ASSETS)?;
+    for (of, asset, file_name) in companions {
+        keys.remove(&asset);
+        if let Some(value) = store.get(Query::Key(asset.as_str().into()))?.await?
+            && let Some(file) = records::read_asset(asset, &value)
+        {
+            remains.companions.push(SavedCompanion { of, file: SavedAsset { file_name, ..file } });
+        }
+    }
+    for asset in keys {
+        let Some(value) = store.get(Query::Key(asset.as_str().into()))?.await? else { continue };
+        match records::read_asset(asset.clone(), &value) {
+            Some(asset) => remains.assets.push(asset),
+            None => remains.unreadable.push(unreadable(&asset, &value)),
+        }
+    }
+    Ok(remains)
 }
 
 /// What is stored is looked up within the transaction: another tab may have changed it.
@@ -280,6 +368,7 @@ async fn save(
     id: &SceneId,
     saved: Saved,
     terms: SaveTerms,
+    sound: &Sound,
 ) -> Result<SaveOutcome, idb::Error> {
     let scenes = transaction.object_store(SCENES)?;
     let stored_ms = scenes.get(key(id))?.await?.map(|scene| records::heading(&scene).changed_at_ms);
@@ -288,7 +377,12 @@ async fn save(
     }
     let assets = transaction.object_store(ASSETS)?;
     let stored = stored_asset_keys(transaction).await?;
-    for file in saved.files().filter(|file| !stored.contains(&file.key)) {
+    for file in saved.files() {
+        // What another tab has stored, or what is not as long as it should be, is looked at.
+        let is_known = sound.borrow().get(&file.key) == Some(&file.bytes.len());
+        if stored.contains(&file.key) && (is_known || is_stored(&assets, file).await?) {
+            continue;
+        }
         assets.put(&records::asset(file), Some(&file.key.as_str().into()))?.await?;
     }
     let keys: Vec<String> = distinct(&saved.assets).map(|asset| asset.key.clone()).collect();
@@ -302,6 +396,17 @@ async fn save(
         set_last_open(transaction, id).await?;
     }
     Ok(SaveOutcome::Saved)
+}
+
+fn size_by_key(file: &SavedAsset) -> (String, usize) {
+    (file.key.clone(), file.bytes.len())
+}
+
+async fn is_stored(assets: &ObjectStore, file: &SavedAsset) -> Result<bool, idb::Error> {
+    let value = assets.get(Query::Key(file.key.as_str().into()))?.await?;
+    Ok(value
+        .and_then(|value| records::read_asset(file.key.clone(), &value))
+        .is_some_and(|it| it.bytes == file.bytes))
 }
 
 async fn set_last_open(transaction: &Transaction, id: &SceneId) -> Result<(), idb::Error> {
@@ -324,11 +429,23 @@ async fn copy_heading(
 }
 
 async fn remove_unneeded(transaction: &Transaction) -> Result<(), idb::Error> {
-    let scenes = transaction.object_store(SCENES)?.get_all(None, None)?.await?;
-    let needed: BTreeSet<String> = scenes.iter().flat_map(records::asset_keys).collect();
+    let mut records = transaction.object_store(SCENES)?.get_all(None, None)?.await?;
+    let unneeded = |records: &[JsValue], stored: &BTreeSet<String>| -> BTreeSet<String> {
+        let needed: BTreeSet<String> = records.iter().flat_map(records::file_keys).collect();
+        stored.difference(&needed).cloned().collect()
+    };
+    let stored = stored_asset_keys(transaction).await?;
+    if unneeded(&records, &stored).is_empty() {
+        return Ok(());
+    }
+    // Before anything goes, the documents are asked too: a heading may be damaged.
+    records.extend(transaction.object_store(DOCUMENTS)?.get_all(None, None)?.await?);
+    if !records.iter().all(records::names_its_files) {
+        return Ok(());
+    }
     let assets = transaction.object_store(ASSETS)?;
-    for unneeded in stored_asset_keys(transaction).await?.difference(&needed) {
-        assets.delete(Query::Key(unneeded.as_str().into()))?.await?;
+    for key in unneeded(&records, &stored) {
+        assets.delete(Query::Key(key.as_str().into()))?.await?;
     }
     Ok(())
 }

@@ -13,6 +13,7 @@ mod pixels;
 mod safety;
 mod scenes;
 mod startup;
+mod storage;
 mod view;
 mod workspace;
 
@@ -66,6 +67,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(BOTH, "drag-cost", idle::drag_cost),
     Flow::on(WEBGL, "drag-ten", large::drag_ten).long(),
     Flow::on(WEBGL, "drag-million", large::drag_million).long(),
+    Flow::on(WEBGL, "drop-million", large::drop_million).long(),
     Flow::on(WEBGL, "many-photos", large::many_photos).long(),
     Flow::on(WEBGL, "very-many-photos", large::very_many_photos).long(),
     Flow::on(WEBGL, "large-photo", large::large_photo_flow),
@@ -86,6 +88,10 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "scenes-mid-drag", scenes::mid_drag),
     Flow::on(WEBGL, "scenes-version-1", scenes::version_1),
     Flow::on(WEBGL, "scenes-newer-version", scenes::newer_version),
+    Flow::on(WEBGL, "storage-killed", storage::killed).long(),
+    Flow::on(WEBGL, "storage-full", storage::full),
+    Flow::on(WEBGL, "storage-tabs", storage::two_tabs),
+    Flow::on(WEBGL, "storage-damaged", storage::damaged).long(),
     Flow::on(WEBGL, "looks", workspace::looks),
     Flow::on(WEBGL, "nudges", workspace::nudges),
     Flow::on(WEBGL, "handles", workspace::handles),

@@ -22,6 +22,12 @@ pub struct AssetLine {
 }
 
 impl Record {
+    /// Stands in a list for one that cannot be read.
+    pub fn of_damaged(id: &str) -> Self {
+        let heading = SceneHeading { name: format!("Damaged scene ({id})"), ..SceneHeading::default() };
+        Self { heading, ..Self::default() }
+    }
+
     /// With its photos and meshes.
     pub fn bytes(&self) -> u64 {
         let bytes: BTreeMap<&String, u64> = self.files().map(|file| (&file.key, file.bytes)).collect();

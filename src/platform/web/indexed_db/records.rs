@@ -35,6 +35,22 @@ pub fn summary((id, scene): (&JsValue, &JsValue)) -> Option<SceneSummary> {
     Some(SceneSummary { id: SceneId::new(&id.as_string()?), heading: heading(scene), bytes })
 }
 
+/// False for what is no heading any more.
+pub fn is_heading(scene: &JsValue) -> bool {
+    field(scene, "changedAtMs").as_f64().is_some() && names_its_files(scene)
+}
+
+/// Of a scene or a document: does it say which files it needs?
+pub fn names_its_files(value: &JsValue) -> bool {
+    field(value, "assets").is_instance_of::<Array>()
+}
+
+/// A record that is not what it should be, for whoever can make something of it.
+pub fn as_text(value: &JsValue) -> String {
+    let json = JSON::stringify(value).ok().and_then(|text| text.as_string());
+    json.unwrap_or_else(|| format!("{value:?}"))
+}
+
 pub fn set_name(scene: &JsValue, name: &str) {
     // Setting a property of a plain object cannot fail.
     Reflect::set(scene, &"name".into(), &name.into()).ok();
@@ -88,7 +104,12 @@ pub fn asset_bytes(value: &JsValue) -> u64 {
     field(value, "bytes").dyn_into::<Uint8Array>().map_or(0, |bytes| u64::from(bytes.length()))
 }
 
-/// Of a scene or a document.
+/// Of a scene or a document, with the companions'.
+pub fn file_keys(value: &JsValue) -> Vec<String> {
+    let companions = companions(value).into_iter().map(|(_, key, _)| key);
+    asset_keys(value).into_iter().chain(companions).collect()
+}
+
 pub fn asset_keys(value: &JsValue) -> Vec<String> {
     let keys = field(value, "assets").dyn_into::<Array>().unwrap_or_default();
     keys.iter().filter_map(|key| key.as_string()).collect()
