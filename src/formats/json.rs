@@ -11,11 +11,48 @@ use super::{
 /// memory.
 const MAX_BYTES: usize = 32 << 20;
 
+/// What the values of a text may take in memory: far more than those of any data set do.
+const MAX_VALUE_BYTES: usize = 160 << 20;
+
+/// Refuses a text of very many small values, each of which takes more than its text: `[[],[],…` and the like. `marks` are what
+/// an item of a list or a line begins or ends with.
+pub(super) fn check_values(bytes: &[u8], marks: &[u8]) -> Result<(), FormatError> {
+    // A list's room is doubled when it is full, with the old one still there; a mapping has room for eleven from the start.
+    const BYTES_PER_ITEM: usize = 96;
+    const BYTES_PER_MAPPING: usize = 700;
+    let most = bytes.iter().fold(0_usize, |sum, byte| match byte {
+        b'{' => sum.saturating_add(BYTES_PER_MAPPING),
+        mark if marks.contains(mark) => sum.saturating_add(BYTES_PER_ITEM),
+        _ => sum,
+    });
+    if most > MAX_VALUE_BYTES {
+        return Err(FormatError::at("the file", "more values than any cameras and poses have"));
+    }
+    Ok(())
+}
+
+/// What a file of ours says it is, without a tree of its values.
+fn own_format(bytes: &[u8]) -> Option<String> {
+    #[derive(serde::Deserialize)]
+    struct Head {
+        format: String,
+    }
+    serde_json::from_slice(bytes).ok().map(|Head { format }| format)
+}
+
 /// Reads a camera, poses or a document of ours.
 pub(super) fn parse_json(file: &NamedFile) -> Result<Parsed, FormatError> {
     let (name, bytes) = (file.name.as_str(), &*file.bytes);
     if bytes.len() > MAX_BYTES {
         return Err(FormatError::TooMuchText { megabytes: MAX_BYTES >> 20 });
+    }
+    match own_format(bytes).as_deref() {
+        Some(own_poses::FORMAT) => return own_poses::read_poses_json(name, bytes).map(Parsed::Poses),
+        Some(_) => {
+            let document = read_document(bytes)?;
+            return Ok(Parsed::Poses(Incoming::from_document(name, &document)?));
+        }
+        None => check_values(bytes, b",[")?,
     }
     let value: Value = serde_json::from_slice(bytes).map_err(FormatError::json)?;
     if value.is_array() {
@@ -23,13 +60,6 @@ pub(super) fn parse_json(file: &NamedFile) -> Result<Parsed, FormatError> {
     }
     if pins::looks_like_pins(&value) {
         return pins::read_pins(&value).map(Parsed::Pins);
-    }
-    if value.get("format").is_some_and(|format| format == own_poses::FORMAT) {
-        return own_poses::read_poses_json(name, bytes).map(Parsed::Poses);
-    }
-    if value.get("format").is_some() {
-        let document = read_document(bytes)?;
-        return Ok(Parsed::Poses(Incoming::from_document(name, &document)?));
     }
     if camera::looks_like_camera(&value) {
         return camera::read_camera(name, &value).map(Parsed::Camera);

@@ -16,6 +16,7 @@ pub fn read_yaml(text: &str) -> Result<Value, FormatError> {
     if text.len() > MAX_BYTES {
         return Err(FormatError::TooMuchText { megabytes: MAX_BYTES >> 20 });
     }
+    super::json::check_values(text.as_bytes(), b",[\n")?;
     let mut parser = Parser { lines: lines_of(text), next: 0 };
     let Some(first) = parser.peek() else { return Ok(Value::Null) };
     let indent = first.indent;

@@ -211,8 +211,12 @@ fn nested_texts() {
     let deeper: String = (0..3000).map(|depth| format!("{}a:\n", " ".repeat(depth))).collect();
     assert!(!dropped("deeper.yml", deeper).is_empty());
     // Many small values: each takes more than its text.
-    let many = format!("[{}[]]", "[],".repeat(4 << 20));
-    assert!(!dropped("values.json", many).is_empty());
+    for value in ["[],", "{},", "{\"\":0},", "0,"] {
+        let count = (8 << 20) / value.len();
+        assert!(!dropped("values.json", format!("[{}0]", value.repeat(count))).is_empty());
+        assert!(!dropped("values.yml", format!("a: [{}0]", value.repeat(count))).is_empty());
+    }
+    assert!(!dropped("items.yml", "- 0\n".repeat(4 << 20)).is_empty());
 }
 
 fn pictures_and_arrays() {
