@@ -28,6 +28,16 @@ use crate::mesh::{coarse_mesh, mesh_edges, shading_vertices};
 use crate::photo::{decode, decode_depth, is_depth_like, read_header};
 use seeds::SEPARATOR;
 
+/// Puts a target's seeds into `corpus/TARGET`, where the fuzzer is told to look.
+pub fn write_seeds(target: &str) {
+    let folder = std::path::Path::new("corpus").join(target);
+    std::fs::create_dir_all(&folder).expect("the corpus can be written");
+    let of_target = seeds::by_target().into_iter().filter(|(name, _)| *name == target);
+    for (number, bytes) in of_target.flat_map(|(_, files)| files).enumerate() {
+        std::fs::write(folder.join(number.to_string()), bytes).expect("the corpus can be written");
+    }
+}
+
 pub fn ply(bytes: &[u8]) {
     mesh("mesh.ply", &[("t.png", &seeds::pixel_png())], bytes);
 }
@@ -161,7 +171,9 @@ pub fn dataset(bytes: &[u8]) {
     let mut contents = Contents::new();
     while let Some(path) = parts.next() {
         let content = parts.next().unwrap_or_default();
-        contents.insert(String::from_utf8_lossy(path).into_owned(), content.into());
+        // As a listing has them.
+        let path = String::from_utf8_lossy(path).replace('\\', "/");
+        contents.insert(path, content.into());
     }
     let files = contents.iter().map(|(path, content)| (path.clone(), content.len() as u64));
     let Ok(listing) = Listing::new("set", files) else { return };

@@ -1,3 +1,6 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| pinpose_fuzz::gltf(bytes));
+libfuzzer_sys::fuzz_target!(
+    init: pinpose_fuzz::write_seeds("gltf"),
+    |bytes: &[u8]| pinpose_fuzz::gltf(bytes)
+);

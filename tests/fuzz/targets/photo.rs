@@ -1,3 +1,6 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| pinpose_fuzz::photo(bytes));
+libfuzzer_sys::fuzz_target!(
+    init: pinpose_fuzz::write_seeds("photo"),
+    |bytes: &[u8]| pinpose_fuzz::photo(bytes)
+);
