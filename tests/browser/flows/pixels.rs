@@ -29,7 +29,9 @@ const NOTCHES: i32 = 10;
 /// A disc that faces the camera is an ellipse whose centre is the image of its centre.
 pub fn pixels(context: &mut Context) -> anyhow::Result<()> {
     let page = context.start("")?;
-    let disc = disc_obj("disc.obj", DISC_CENTER_MM, DISC_RADIUS_MM, 96);
+    let mut disc = disc_obj("disc.obj", DISC_CENTER_MM, DISC_RADIUS_MM, 96);
+    // So small a mesh would be taken for one in centimetres.
+    disc.bytes.splice(..0, *b"# units: mm\n");
     page.load(&[data::flat_photo("flat.png", PHOTO_COLOR)?, disc, data::camera_file("camera.json")])?;
     page.command("toggle_outline")?;
     // The viewport as wide as the page shows the photo at about its own size.
