@@ -7,10 +7,10 @@ use anyhow::{Context as _, ensure};
 use image::{ImageFormat, Rgb, RgbImage};
 use serde_json::json;
 
-use crate::api::{Matrix, PATIENCE, State};
+use crate::api::{Matrix, PATIENCE, State, Widget};
 use crate::context::Context;
 use crate::data::{File, camera_file, disc_obj, flat_photo, noise};
-use crate::input::Modifier;
+use crate::input::{Button, Modifier};
 use crate::page::Page;
 use crate::poses::{axis_rotation, unprojected, with_translation};
 
@@ -314,9 +314,18 @@ fn close_messages(page: &mut Page) -> anyhow::Result<()> {
 fn choose_scene(page: &mut Page, row: &str) -> anyhow::Result<()> {
     close_messages(page)?;
     page.key("o", &[Modifier::Control, Modifier::Shift])?;
-    let widgets = page.wait_for_widgets(&["Scenes", "Duplicate"])?;
-    let label = widgets.into_iter().map(|widget| widget.label).find(|label| label.starts_with(row));
-    page.click_widget(&label.with_context(|| format!("{row} is not listed"))?)
+    // A row says how long ago its scene was changed: it is found by its beginning, where it is seen twice.
+    let deadline = Instant::now() + PATIENCE;
+    let mut before = None;
+    loop {
+        let widgets = page.wait_for_widgets(&["Scenes", "Duplicate"])?;
+        let now = widgets.iter().find(|widget| widget.label.starts_with(row)).map(Widget::center);
+        match (before, now) {
+            (Some(before), Some(now)) if before == now => return page.click(now, Button::Left, &[]),
+            _ => before = now,
+        }
+        ensure!(Instant::now() < deadline, "{row} is not listed");
+    }
 }
 
 fn names_in(zip: &[u8]) -> anyhow::Result<Vec<String>> {
