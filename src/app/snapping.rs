@@ -116,31 +116,27 @@ impl PinPose {
 
     /// Begins once photo and meshes are there.
     fn prepare_snap(&mut self, asked: Asked) {
-        let Some(photo) = self.session.scene().photo(asked.photo) else {
+        let scene = self.session.scene();
+        let photo =
+            scene.photo(asked.photo).filter(|_| scene.annotation(asked.photo, asked.object).is_some());
+        let Some(photo) = photo else {
             self.snapping.asked = None;
             return;
         };
         let (camera, pixels) = (photo.camera, self.photos.get(photo.asset.sha256));
-        let mut models = Vec::new();
-        let mut is_complete = true;
         let here: Vec<(ObjectId, Pose)> = (self.session.scene().objects_in(asked.photo))
             .map(|(object, annotation)| (object.id, annotation.camera_from_object))
             .collect();
-        for (object, pose) in here {
-            match self.contour_model(object) {
-                Wanted::There(model) => models.push((object, pose, model)),
-                Wanted::OnItsWay => is_complete = false,
-                Wanted::Impossible if object == asked.object => {
-                    self.snapping.asked = None;
-                    self.notify(Notice::error("This mesh has no surface to snap to the photo"));
-                    return;
-                }
-                Wanted::Impossible => {}
-            }
-        }
-        let (Some(pixels), true) = (pixels, is_complete) else { return };
+        // All that are missing are sent for at once. Until they are there this comes round every frame, so nothing is built.
+        let missing = here.iter().filter(|(object, _)| !self.has_solver_mesh(*object)).count();
+        let (Some(pixels), 0) = (pixels, missing) else { return };
         self.snapping.asked = None;
-        let Some(position) = models.iter().position(|(object, ..)| *object == asked.object) else { return };
+        let model_of = |(object, pose)| Some((object, pose, self.contour_model(object)?));
+        let mut models: Vec<_> = here.into_iter().filter_map(model_of).collect();
+        let Some(position) = models.iter().position(|(object, ..)| *object == asked.object) else {
+            self.notify(Notice::error("This mesh has no surface to snap to the photo"));
+            return;
+        };
         let (_, _, model) = models.remove(position);
         let annotation = self.session.scene().annotation(asked.photo, asked.object);
         let hints = SnapHints {
@@ -152,21 +148,27 @@ impl PinPose {
         self.snapping.running = Some((asked, Box::new(snap), 0.0));
     }
 
-    fn contour_model(&mut self, object: ObjectId) -> Wanted {
-        let Some(object) = self.session.scene().object(object) else { return Wanted::Impossible };
+    /// Is what the solvers look at there, or known not to come? If not, it is sent for.
+    fn has_solver_mesh(&mut self, object: ObjectId) -> bool {
+        let Some(object) = self.session.scene().object(object) else { return true };
         let sha256 = object.mesh.sha256;
-        let known = self.snapping.meshes.iter().find(|(known, _)| *known == sha256);
-        let Some((_, mesh)) = known else {
-            if !self.snapping.wanted.contains(&sha256) {
-                self.snapping.wanted.push(sha256);
-                self.loading.prepare_for_solvers(&object.mesh);
-            }
-            return Wanted::OnItsWay;
-        };
+        if self.snapping.meshes.iter().any(|(known, _)| *known == sha256) {
+            return true;
+        }
+        if !self.snapping.wanted.contains(&sha256) {
+            self.snapping.wanted.push(sha256);
+            self.loading.prepare_for_solvers(&object.mesh);
+        }
+        false
+    }
+
+    /// `None` for a mesh without a surface.
+    fn contour_model(&self, object: ObjectId) -> Option<Arc<ContourModel>> {
+        let object = self.session.scene().object(object)?;
+        let (_, mesh) = self.snapping.meshes.iter().find(|(known, _)| *known == object.mesh.sha256)?;
         let transform = DAffine3::from_mat4(object.mesh_from_file);
-        let framed = mesh.as_ref().and_then(|mesh| mesh.transformed(&transform).ok());
-        let model = framed.and_then(|mesh| ContourModel::new(&mesh));
-        model.map_or(Wanted::Impossible, |model| Wanted::There(Arc::new(model)))
+        let framed = mesh.as_ref()?.transformed(&transform).ok()?;
+        ContourModel::new(&framed).map(Arc::new)
     }
 
     fn finish_snap(&mut self, asked: Asked, outcome: &SnapOutcome) {
@@ -193,10 +195,4 @@ impl PinPose {
             100.0 * outcome.score_after
         )));
     }
-}
-
-enum Wanted {
-    There(Arc<ContourModel>),
-    OnItsWay,
-    Impossible,
 }
