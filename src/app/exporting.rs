@@ -5,8 +5,11 @@ use std::rc::Rc;
 
 use super::PinPose;
 use crate::formats::NamedFile;
-use crate::formats::export::{ExportJob, ZipStream, safe_file_name};
+use super::pictures::PictureFor;
+use crate::formats::export::{ExportJob, Exported, OverlayRequest, ZipStream, safe_file_name};
 use crate::platform::{self, ExportFolder, GrowingDownload};
+use crate::render::ExportKind;
+use crate::scene::Scene;
 use crate::session::Notice;
 use crate::ui::{Busy, ExportRequest};
 
@@ -27,6 +30,8 @@ struct Running {
     /// Of the archive.
     name: String,
     problems: Vec<String>,
+    /// An overlay is being drawn; what follows waits for it.
+    awaits: Option<OverlayRequest>,
 }
 
 type Picked = (Box<ExportJob>, Result<Option<ExportFolder>, String>);
@@ -51,6 +56,11 @@ impl Exporting {
             text: format!("Exporting {} of {total} files…", (done + 1).min(total)),
             can_cancel: true,
         })
+    }
+
+    /// The scene as it is exported.
+    pub fn scene(&self) -> Option<&Scene> {
+        self.running.as_ref().map(|running| running.job.scene())
     }
 
     /// Gives up what is under way; true if there was something.
@@ -83,7 +93,7 @@ impl PinPose {
             "" => "pinpose-export".to_owned(),
             name => format!("{}-export", safe_file_name(name)),
         };
-        self.exporting.running = Some(Running { job, target, name, problems: Vec::new() });
+        self.exporting.running = Some(Running { job, target, name, problems: Vec::new(), awaits: None });
         self.ctx.request_repaint();
     }
 
@@ -99,17 +109,43 @@ impl PinPose {
         }
         let Some(mut running) = self.exporting.running.take() else { return };
         match running.slice(&self.ctx) {
-            Ok(true) => {
+            Ok(Next::Later) => {
                 self.exporting.running = Some(running);
                 self.ctx.request_repaint();
             }
-            Ok(false) => self.finish_export(running),
-            Err(problem) => self.notify(Notice::error(format!("The export has failed: {problem}"))),
+            Ok(Next::Draw(request)) => {
+                running.awaits = Some(request.clone());
+                self.exporting.running = Some(running);
+                let target = PictureFor::Export(request.path);
+                self.pictures.ask(request.photo, ExportKind::Overlay, None, target);
+                self.ctx.request_repaint();
+            }
+            Ok(Next::Nothing) => self.finish_export(running),
+            Err(problem) => self.notify(failed(&problem)),
+        }
+    }
+
+    /// An overlay has been drawn. One that nobody waits for belongs to an export that was cancelled.
+    pub(super) fn take_export_picture(&mut self, path: String, png: Result<Vec<u8>, String>) {
+        let Some(running) = &mut self.exporting.running else { return };
+        if running.awaits.take_if(|request| request.path == path).is_none() {
+            return;
+        }
+        let put = match png {
+            Ok(bytes) => running.put(NamedFile { name: path, bytes: bytes.into() }, &self.ctx),
+            Err(problem) => {
+                running.problems.push(format!("{path}: {problem}"));
+                Ok(())
+            }
+        };
+        if let Err(problem) = put {
+            self.exporting.running = None;
+            self.notify(failed(&problem));
         }
     }
 
     fn finish_export(&mut self, running: Running) {
-        let Running { job, target, name, problems } = running;
+        let Running { job, target, name, problems, .. } = running;
         let (files, poses) = (job.done().saturating_sub(problems.len()), job.pose_count());
         problems.into_iter().for_each(|problem| self.notify(Notice::error(format!("Left out: {problem}"))));
         let saved = match target {
@@ -131,29 +167,43 @@ impl PinPose {
     }
 }
 
+fn failed(problem: &str) -> Notice {
+    Notice::error(format!("The export has failed: {problem}"))
+}
+
+/// What an export does after a moment of work.
+enum Next {
+    /// Goes on in another frame.
+    Later,
+    Draw(OverlayRequest),
+    Nothing,
+}
+
 impl Running {
-    /// Makes files for a moment; false when there are no more.
-    fn slice(&mut self, ctx: &egui::Context) -> Result<bool, String> {
+    /// Makes files for a moment.
+    fn slice(&mut self, ctx: &egui::Context) -> Result<Next, String> {
         let start_ms = platform::now_ms();
-        loop {
+        while self.awaits.is_none() {
             if let Target::Folder(_, writing) = &self.target {
                 let mut writing = writing.borrow_mut();
                 if let Some(problem) = writing.problem.take() {
                     return Err(problem);
                 }
                 if writing.is_busy {
-                    return Ok(true);
+                    return Ok(Next::Later);
                 }
             }
             match self.job.next() {
-                None => return Ok(false),
+                None => return Ok(Next::Nothing),
                 Some(Err(error)) => self.problems.push(error.to_string()),
-                Some(Ok(file)) => self.put(file, ctx)?,
+                Some(Ok(Exported::File(file))) => self.put(file, ctx)?,
+                Some(Ok(Exported::Overlay(request))) => return Ok(Next::Draw(request)),
             }
             if platform::now_ms() - start_ms > SLICE_MS {
-                return Ok(true);
+                break;
             }
         }
+        Ok(Next::Later)
     }
 
     fn put(&mut self, file: NamedFile, ctx: &egui::Context) -> Result<(), String> {

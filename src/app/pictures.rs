@@ -6,7 +6,7 @@ use super::PinPose;
 use crate::photo::png_rgba;
 use crate::platform::{self, PageAnswer, PageReply};
 use crate::render::{ExportKind, Layer, PixelsPending, export_picture, raster_png, silhouette_png};
-use crate::scene::{ObjectId, PhotoId};
+use crate::scene::{ObjectId, PhotoId, Scene};
 use crate::session::{Notice, PictureKind, PictureRequest};
 
 /// Pictures that take more than this frame.
@@ -29,6 +29,8 @@ struct Asked {
 pub enum PictureFor {
     Page(PageReply),
     Download(String),
+    /// Into the export that is under way, whose scene is drawn, under this path.
+    Export(String),
 }
 
 impl Pictures {
@@ -52,7 +54,7 @@ impl PinPose {
         for asked in std::mem::take(&mut self.pictures.asked) {
             match asked.kind {
                 ExportKind::Mask | ExportKind::VisibleMask | ExportKind::Depth => self.rasterize(asked),
-                ExportKind::Overlay if !self.is_decoded(asked.photo) || self.waits_for_depth(asked.photo) => {
+                ExportKind::Overlay if !self.is_decoded(&asked) || self.waits_for_depth(asked.photo) => {
                     self.pictures.asked.push(asked);
                 }
                 ExportKind::Overlay | ExportKind::Silhouette => self.draw_picture(asked, ctx),
@@ -67,10 +69,9 @@ impl PinPose {
     }
 
     /// Are the photo's pixels there? If not, they are sent for.
-    fn is_decoded(&mut self, photo: PhotoId) -> bool {
-        let Some(asset) = self.session.scene().photo(photo).map(|photo| photo.asset.clone()) else {
-            return true;
-        };
+    fn is_decoded(&mut self, asked: &Asked) -> bool {
+        let photo = self.scene_of(&asked.target).photo(asked.photo);
+        let Some(asset) = photo.map(|photo| photo.asset.clone()) else { return true };
         if self.photos.get(asset.sha256).is_some() {
             return true;
         }
@@ -81,9 +82,15 @@ impl PinPose {
         false
     }
 
+    /// An export draws what there was when it began.
+    fn scene_of(&self, target: &PictureFor) -> &Scene {
+        let exported = matches!(target, PictureFor::Export(_)).then(|| self.exporting.scene()).flatten();
+        exported.unwrap_or_else(|| self.session.scene())
+    }
+
     fn draw_picture(&mut self, asked: Asked, ctx: &egui::Context) {
         let depth = self.depth_of(asked.photo);
-        let scene = self.session.scene();
+        let scene = self.scene_of(&asked.target);
         let pixels = scene.photo(asked.photo).and_then(|photo| self.photos.get(photo.asset.sha256));
         let object = asked.object.filter(|_| asked.kind.is_of_one_object());
         let picture = export_picture(scene, asked.photo, pixels, depth, object);
@@ -124,6 +131,7 @@ impl PinPose {
                 // Who asked may be gone.
                 reply.send(png.map(PageAnswer::Bytes)).ok();
             }
+            PictureFor::Export(path) => self.take_export_picture(path, png),
             PictureFor::Download(file_name) => {
                 match png.and_then(|bytes| platform::download(&file_name, &bytes)) {
                     Ok(()) => self.notify(Notice::info(format!("{file_name} saved"))),

@@ -4,13 +4,17 @@ use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use super::draw::LazyRenderer;
 use super::{Failure, Outcome, open};
 use crate::formats::export::{
-    CameraAxes, ExportJob, ExportOptions, ExportPart, LengthUnit, PhotoChoice, PoseDirection, ZipStream,
+    CameraAxes, ExportError, ExportJob, ExportOptions, ExportPart, Exported, LengthUnit, OverlayRequest, PhotoChoice,
+    PoseDirection, ZipStream,
 };
 use crate::formats::{Keep, NamedFile, write_workspace};
 use crate::mesh::MeshUnit;
+use crate::render::ExportKind;
 use crate::scene::{Scene, file_stem};
 use crate::session::Session;
 
@@ -60,8 +64,9 @@ fn export(session: &Session, options: Options) -> Outcome {
         eprintln!("pinpose: no object has been posed, there are no poses to write");
     }
     let mut problems = Vec::new();
-    let mut made =
-        job.by_ref().filter_map(|file| file.map_err(|error| problems.push(error.to_string())).ok());
+    let mut renderer = LazyRenderer::default();
+    let mut made = std::iter::from_fn(|| job.next().map(|made| finished(made, &job, &mut renderer)))
+        .filter_map(|file| file.map_err(|problem| problems.push(problem)).ok());
     let written = match target {
         Target::File(name) => {
             made.find(|file| file.name == name).map_or(Ok(()), |file| fs::write(&out, &*file.bytes))
@@ -71,6 +76,21 @@ fn export(session: &Session, options: Options) -> Outcome {
     };
     written.map_err(|error| unwritable(&out, &error))?;
     if problems.is_empty() { Ok(()) } else { Err(Failure::Input(problems)) }
+}
+
+/// The file, drawn if it is one that has to be.
+fn finished(
+    made: Result<Exported, ExportError>,
+    job: &ExportJob,
+    renderer: &mut LazyRenderer,
+) -> Result<NamedFile, String> {
+    let OverlayRequest { photo, path } = match made.map_err(|error| error.to_string())? {
+        Exported::File(file) => return Ok(file),
+        Exported::Overlay(request) => request,
+    };
+    let png = renderer.draw(job.scene(), photo, ExportKind::Overlay, None);
+    let png = png.map_err(|problem| format!("{path}: {problem}"))?;
+    Ok(NamedFile { name: path, bytes: Arc::from(png) })
 }
 
 fn write_zip(out: &Path, files: impl Iterator<Item = NamedFile>) -> std::io::Result<()> {

@@ -1,6 +1,7 @@
 //! The command line: one file per verb. Exit code 0 done, 1 bad input (one line on stderr per problem), 2 bad usage.
 
 mod convert;
+mod draw;
 mod evaluate;
 mod inspect;
 mod open;

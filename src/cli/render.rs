@@ -1,14 +1,13 @@
 //! `pinpose render IN… --out FOLDER`: each photo with its objects, at its own resolution.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use serde_json::json;
 
+use super::draw::LazyRenderer;
 use super::{Failure, Outcome, open};
 use crate::mesh::MeshUnit;
-use crate::photo::{decode, decode_depth, png_rgba};
-use crate::render::{ExportKind, Layer, Renderer, export_picture, raster_png, silhouette_png};
+use crate::render::ExportKind;
 use crate::scene::{ObjectId, Photo, Scene, file_stem};
 
 struct Options {
@@ -27,24 +26,12 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
     std::fs::create_dir_all(&options.out)
         .map_err(|error| problem(format!("{}: {error}", options.out.display())))?;
 
-    let mut renderer = None;
+    let mut renderer = LazyRenderer::default();
     let mut written = Vec::new();
     for photo in &scene.photos {
         for object in subjects(scene, photo, options.kind) {
-            let png = match options.kind {
-                ExportKind::Overlay | ExportKind::Silhouette => {
-                    let renderer = match &mut renderer {
-                        Some(renderer) => renderer,
-                        empty => {
-                            empty.insert(Renderer::headless().map_err(|error| problem(error.to_string()))?)
-                        }
-                    };
-                    draw(renderer, scene, photo, options.kind, object).map_err(problem)?
-                }
-                kind => raster_png(scene, photo.id, kind, object),
-            };
-            let png =
-                png.ok_or_else(|| problem(format!("{}: the picture cannot be made", photo.asset.file_name)))?;
+            let png = renderer.draw(scene, photo.id, options.kind, object);
+            let png = png.map_err(|reason| problem(format!("{}: {reason}", photo.asset.file_name)))?;
             let name = picture_name(scene, photo, options.kind, object);
             let path = options.out.join(&name);
             std::fs::write(&path, png).map_err(|error| problem(format!("{}: {error}", path.display())))?;
@@ -92,26 +79,6 @@ fn subjects(scene: &Scene, photo: &Photo, kind: ExportKind) -> Vec<Option<Object
     } else {
         vec![None]
     }
-}
-
-fn draw(
-    renderer: &mut Renderer,
-    scene: &Scene,
-    photo: &Photo,
-    kind: ExportKind,
-    object: Option<ObjectId>,
-) -> Result<Option<Vec<u8>>, String> {
-    let decoded =
-        decode(&photo.asset.bytes).map_err(|error| format!("{}: {error}", photo.asset.file_name))?;
-    let occluding = photo.depth.as_ref().filter(|depth| depth.occludes);
-    let depth = occluding.map(|depth| decode_depth(&depth.asset.bytes).map(Arc::new)).transpose();
-    let depth = depth.map_err(|error| format!("the depth map of {}: {error}", photo.name))?;
-    let pixels = Some(Arc::new(decoded.pixels));
-    let Some(picture) = export_picture(scene, photo.id, pixels, depth, object) else { return Ok(None) };
-    let layer = if kind == ExportKind::Silhouette { Layer::Ids } else { Layer::Picture };
-    let pending = renderer.draw_and_read(&picture, [photo.camera.width, photo.camera.height], layer);
-    let pixels = pending.wait(renderer.gpu()).map_err(|error| error.to_string())?;
-    Ok(if kind == ExportKind::Silhouette { silhouette_png(&pixels) } else { png_rgba(&pixels) })
 }
 
 fn picture_name(scene: &Scene, photo: &Photo, kind: ExportKind, object: Option<ObjectId>) -> String {

@@ -1,21 +1,21 @@
 //! A tree of boxes over a mesh's triangles, for ray casts.
 //!
-//! Built top down with the surface area heuristic over bins (Wald, *On fast Construction of SAH-based Bounding Volume
-//! Hierarchies*, 2007).
+//! Triangles are sorted along a space-filling curve, and the tree follows the bits of their places on it (Lauterbach et al.,
+//! *Fast BVH Construction on GPUs*, 2009). A tree that weighs the areas of boxes is cast through faster, but takes ten times
+//! as long to build, and a mesh of a million triangles that was just dropped is waited for; casts are one a frame.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, UVec3, Vec3};
 
 use super::Mesh;
 use super::ray_cast::{RayCaster, RayHit};
 use crate::math::Ray;
 
-const BINS: usize = 16;
-const LARGEST_LEAF: usize = 8;
-/// Below this depth the boxes are halved by count, which bounds the depth of the tree, and so the traversal's stack.
-const HEURISTIC_DEPTH: u32 = 48;
-/// The heuristic's levels and one for each bit of the triangle count.
-const STACK_SIZE: usize = HEURISTIC_DEPTH as usize + 32;
+const LARGEST_LEAF: usize = 4;
+/// Of each axis, in a place on the curve.
+const AXIS_BITS: u32 = 10;
+/// A level for each bit of the curve, and for triangles at the same place one for each bit of their count.
+const STACK_SIZE: usize = 3 * AXIS_BITS as usize + 32;
 
 /// A tree of boxes over the triangles of one mesh, which it does not keep.
 #[derive(Debug, Clone)]
@@ -36,14 +36,6 @@ struct Node {
     triangle_count: u32,
 }
 
-/// A triangle's box while the tree is built.
-#[derive(Debug, Clone, Copy)]
-struct Item {
-    min: Vec3,
-    max: Vec3,
-    triangle: u32,
-}
-
 #[derive(Debug, Clone, Copy)]
 struct Box3 {
     min: Vec3,
@@ -57,51 +49,51 @@ impl Box3 {
         self.min = self.min.min(min);
         self.max = self.max.max(max);
     }
-
-    fn around(items: &[Item]) -> Self {
-        items.iter().fold(Self::EMPTY, |mut around, item| {
-            around.grow(item.min, item.max);
-            around
-        })
-    }
-
-    fn half_area(&self) -> f32 {
-        let size = (self.max - self.min).max(Vec3::ZERO);
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
-}
-
-impl Item {
-    /// Twice the centre; the factor does not matter for sorting.
-    fn center(&self) -> Vec3 {
-        self.min + self.max
-    }
 }
 
 impl Bvh {
     /// Builds the tree in O(n log n).
     pub fn build(mesh: &Mesh) -> Self {
-        let mut items: Vec<Item> = (0_u32..)
-            .zip(mesh.triangles())
-            .map(|(number, corners)| {
-                let [a, b, c] = corners.map(|vertex| mesh.positions_mm()[vertex as usize]);
-                Item { min: a.min(b).min(c), max: a.max(b).max(c), triangle: number }
-            })
-            .collect();
-        let mut nodes = vec![leaf(&items, 0)];
-        let mut pending = vec![(0_usize, 0_usize, items.len(), 0_u32)];
-        while let Some((node, start, end, depth)) = pending.pop() {
-            let Some(left_count) = split(&mut items[start..end], depth) else { continue };
-            let middle = start + left_count;
+        let places = sorted_places(mesh);
+        let mut nodes = vec![leaf(0, places.len())];
+        let mut pending = vec![0_usize];
+        while let Some(node) = pending.pop() {
+            let Node { first, triangle_count, .. } = nodes[node];
+            let (start, end) = (first as usize, (first + triangle_count) as usize);
+            if end - start <= LARGEST_LEAF {
+                continue;
+            }
+            let middle = start + split(&places[start..end]);
             let first_child = nodes.len();
-            nodes.push(leaf(&items[start..middle], start));
-            nodes.push(leaf(&items[middle..end], middle));
+            nodes.push(leaf(start, middle));
+            nodes.push(leaf(middle, end));
             nodes[node].first = first_child as u32;
             nodes[node].triangle_count = 0;
-            pending.push((first_child, start, middle, depth + 1));
-            pending.push((first_child + 1, middle, end, depth + 1));
+            pending.extend([first_child, first_child + 1]);
         }
-        Self { nodes, triangles: items.iter().map(|item| item.triangle).collect() }
+        let mut tree = Self { nodes, triangles: places.into_iter().map(|place| place.triangle).collect() };
+        tree.fit(mesh);
+        tree
+    }
+
+    /// Draws the boxes around what is in them. Children come after their parents, so backwards every child is done first.
+    fn fit(&mut self, mesh: &Mesh) {
+        for number in (0..self.nodes.len()).rev() {
+            let node = self.nodes[number];
+            let (first, count) = (node.first as usize, node.triangle_count as usize);
+            let mut around = Box3::EMPTY;
+            if count == 0 {
+                self.nodes[first..first + 2].iter().for_each(|child| around.grow(child.min, child.max));
+            } else {
+                for &triangle in &self.triangles[first..first + count] {
+                    for vertex in mesh.triangles()[triangle as usize] {
+                        let position = mesh.positions_mm()[vertex as usize];
+                        around.grow(position, position);
+                    }
+                }
+            }
+            (self.nodes[number].min, self.nodes[number].max) = (around.min, around.max);
+        }
     }
 
     /// The tree as bytes, to hand it from the worker that built it to the page: nodes, and the order of triangles.
@@ -175,86 +167,83 @@ impl Bvh {
     }
 }
 
-fn leaf(items: &[Item], first: usize) -> Node {
-    let Box3 { min, max } = Box3::around(items);
-    Node { min, first: first as u32, max, triangle_count: items.len() as u32 }
+/// Without a box as yet.
+fn leaf(start: usize, end: usize) -> Node {
+    Node { min: Vec3::ZERO, first: start as u32, max: Vec3::ZERO, triangle_count: (end - start) as u32 }
 }
 
-/// Reorders the items into two groups and returns the size of the first; `None` where they had better stay one leaf.
-fn split(items: &mut [Item], depth: u32) -> Option<usize> {
-    if items.len() <= 2 {
-        return None;
-    }
-    let centers = items.iter().fold(Box3::EMPTY, |mut centers, item| {
-        centers.grow(item.center(), item.center());
-        centers
+/// A triangle, and where its centre is on the curve.
+#[derive(Debug, Clone, Copy, Default)]
+struct Place {
+    code: u32,
+    triangle: u32,
+}
+
+/// The triangles in the order of the curve; those at one place in the order of their numbers.
+fn sorted_places(mesh: &Mesh) -> Vec<Place> {
+    // Three times the centre; the factor does not matter.
+    let centers = mesh.triangles().iter().map(|corners| {
+        let [a, b, c] = corners.map(|vertex| mesh.positions_mm()[vertex as usize]);
+        a + b + c
     });
-    let extent = centers.max - centers.min;
-    let axis = extent.max_position();
-    let by_heuristic = if depth < HEURISTIC_DEPTH && extent[axis] > 0.0 {
-        split_by_heuristic(items, axis, centers.min[axis], extent[axis])
-    } else {
-        Split::None
+    let mut around = Box3::EMPTY;
+    centers.clone().for_each(|center| around.grow(center, center));
+    let cells = (1_u32 << AXIS_BITS) as f32;
+    // Cells are cubes. A mesh whose centres coincide has one cell.
+    let cells_per_unit = cells / (around.max - around.min).max_element().max(f32::MIN_POSITIVE);
+    let code = |center: Vec3| {
+        let cell = ((center - around.min) * cells_per_unit).min(Vec3::splat(cells - 1.0)).as_uvec3();
+        interleaved(cell)
     };
-    match by_heuristic {
-        Split::At(left_count) => Some(left_count),
-        Split::None if items.len() <= LARGEST_LEAF => None,
-        Split::None => {
-            let middle = items.len() / 2;
-            items.select_nth_unstable_by(middle, |a, b| a.center()[axis].total_cmp(&b.center()[axis]));
-            Some(middle)
+    sorted((0_u32..).zip(centers).map(|(triangle, center)| Place { code: code(center), triangle }).collect())
+}
+
+/// The bits of the three numbers in turn (Morton order).
+fn interleaved(cell: UVec3) -> u32 {
+    let [x, y, z] = cell.to_array().map(spread);
+    (x << 2) | (y << 1) | z
+}
+
+/// The number's lowest ten bits with two zeros before each. Every step moves half of each group up.
+fn spread(number: u32) -> u32 {
+    let number = number & 0x3ff;
+    let number = (number | (number << 16)) & 0x0300_00ff;
+    let number = (number | (number << 8)) & 0x0300_f00f;
+    let number = (number | (number << 4)) & 0x030c_30c3;
+    (number | (number << 2)) & 0x0924_9249
+}
+
+/// By code, a digit of ten bits at a time: several times as fast as by comparison.
+fn sorted(mut places: Vec<Place>) -> Vec<Place> {
+    const DIGIT_BITS: u32 = AXIS_BITS;
+    let mut moved = vec![Place::default(); places.len()];
+    for shift in [0, DIGIT_BITS, 2 * DIGIT_BITS] {
+        let digit = |place: &Place| ((place.code >> shift) & ((1 << DIGIT_BITS) - 1)) as usize;
+        let mut starts = [0_u32; 1 << DIGIT_BITS];
+        places.iter().for_each(|place| starts[digit(place)] += 1);
+        let mut before = 0;
+        for start in &mut starts {
+            (*start, before) = (before, before + *start);
         }
-    }
-}
-
-enum Split {
-    At(usize),
-    None,
-}
-
-fn split_by_heuristic(items: &mut [Item], axis: usize, start: f32, extent: f32) -> Split {
-    let scale = BINS as f32 / extent;
-    let bin_of = |item: &Item| (((item.center()[axis] - start) * scale) as usize).min(BINS - 1);
-    let mut bins = [(Box3::EMPTY, 0_usize); BINS];
-    for item in items.iter() {
-        let (bounds, count) = &mut bins[bin_of(item)];
-        bounds.grow(item.min, item.max);
-        *count += 1;
-    }
-    // The cost of each cut is area × count on both sides; the left sides are summed forwards, the right ones backwards.
-    let mut cost = [0.0_f32; BINS];
-    let (mut bounds, mut count) = (Box3::EMPTY, 0);
-    for cut in 1..BINS {
-        bounds.grow(bins[cut - 1].0.min, bins[cut - 1].0.max);
-        count += bins[cut - 1].1;
-        cost[cut] += bounds.half_area() * count as f32;
-    }
-    (bounds, count) = (Box3::EMPTY, 0);
-    for cut in (1..BINS).rev() {
-        bounds.grow(bins[cut].0.min, bins[cut].0.max);
-        count += bins[cut].1;
-        cost[cut] += bounds.half_area() * count as f32;
-    }
-    bounds.grow(bins[0].0.min, bins[0].0.max);
-    let best = (1..BINS).min_by(|&a, &b| cost[a].total_cmp(&cost[b])).unwrap_or(1);
-    // One step down the tree costs about as much as one triangle.
-    let leaf_cost = bounds.half_area() * (items.len() as f32 - 1.0);
-    if items.len() <= LARGEST_LEAF && cost[best] >= leaf_cost {
-        return Split::None;
-    }
-    let left_count = partition(items, |item| bin_of(item) < best);
-    if left_count == 0 || left_count == items.len() { Split::None } else { Split::At(left_count) }
-}
-
-fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) -> usize {
-    let mut left_count = 0;
-    for i in 0..items.len() {
-        if is_left(&items[i]) {
-            items.swap(left_count, i);
-            left_count += 1;
+        for place in &places {
+            let start = &mut starts[digit(place)];
+            moved[*start as usize] = *place;
+            *start += 1;
         }
+        std::mem::swap(&mut places, &mut moved);
     }
-    left_count
+    places
+}
+
+/// How many of the sorted places go to the left: those whose code lacks the first bit in which the codes differ, or else half.
+fn split(places: &[Place]) -> usize {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return 0 };
+    let differing = first.code ^ last.code;
+    if differing == 0 {
+        return places.len() / 2;
+    }
+    let bit = 1_u32 << differing.ilog2();
+    places.partition_point(|place| place.code & bit == 0)
 }
 
 #[cfg(test)]

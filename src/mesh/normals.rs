@@ -89,9 +89,14 @@ fn with_computed_normals(mesh: &Mesh) -> ShadingMesh {
     );
     let mut fan = Fan::default();
     for place in 0..place_count {
-        fan.gather(mesh, &place_of_vertex, &face_normals, fans.corners_at(place));
-        fan.join_across_smooth_edges();
-        fan.emit(mesh, &mut shading);
+        fan.gather(mesh, &face_normals, fans.corners_at(place));
+        if let Some(vertex) = fan.only_vertex() {
+            fan.emit_as_one(mesh, vertex, &mut shading);
+        } else {
+            fan.gather_edges(mesh, &place_of_vertex);
+            fan.join_across_smooth_edges();
+            fan.emit(mesh, &mut shading);
+        }
     }
     shading
 }
@@ -160,24 +165,54 @@ struct Fan {
 }
 
 impl Fan {
-    fn gather(&mut self, mesh: &Mesh, place_of_vertex: &[u32], face_normals: &[Vec3], corners: &[u32]) {
+    fn gather(&mut self, mesh: &Mesh, face_normals: &[Vec3], corners: &[u32]) {
         self.corners.clear();
-        self.edges.clear();
-        for (number, &corner) in corners.iter().enumerate() {
+        for &corner in corners {
             let (triangle, k) = (corner as usize / 3, corner as usize % 3);
             let vertices = mesh.triangles()[triangle];
-            let [here, next, previous] = [0, 1, 2].map(|step| vertices[(k + step) % 3] as usize);
-            let [at, to_next, to_previous] = [here, next, previous].map(|vertex| mesh.positions_mm()[vertex]);
+            let [at, to_next, to_previous] =
+                [0, 1, 2].map(|step| mesh.positions_mm()[vertices[(k + step) % 3] as usize]);
             let angle_rad = (to_next - at).angle_between(to_previous - at);
             let angle_rad = if angle_rad.is_finite() { angle_rad } else { 0.0 };
             self.corners.push(FanCorner {
                 corner,
-                vertex: here as u32,
+                vertex: vertices[k],
                 normal: face_normals[triangle],
                 angle_rad,
             });
-            self.edges.push((place_of_vertex[next], number as u32));
-            self.edges.push((place_of_vertex[previous], number as u32));
+        }
+    }
+
+    /// The vertex of the file that all triangles share here, if they also face so much the same way that no two of them have
+    /// a crease between them: of most meshes nearly every place. Whether they hang together is not asked then; parts that
+    /// touch in a point and lie as flat as this are shaded as one.
+    fn only_vertex(&self) -> Option<u32> {
+        let first = self.corners.first()?;
+        let smallest_cosine = (CREASE_ANGLE_DEG / 2.0).to_radians().cos();
+        let is_alike = |corner: &FanCorner| {
+            corner.vertex == first.vertex && corner.normal.dot(first.normal) >= smallest_cosine
+        };
+        self.corners.iter().all(is_alike).then_some(first.vertex)
+    }
+
+    fn emit_as_one(&self, mesh: &Mesh, vertex: u32, shading: &mut ShadingMesh) {
+        let sum: Vec3 = self.corners.iter().map(|corner| corner.normal * corner.angle_rad).sum();
+        let number = shading.vertices.len() as u32;
+        shading.vertices.push(shading_vertex(mesh, vertex as usize, sum.normalize_or(Vec3::Z)));
+        for corner in &self.corners {
+            shading.indices[corner.corner as usize] = number;
+        }
+    }
+
+    fn gather_edges(&mut self, mesh: &Mesh, place_of_vertex: &[u32]) {
+        self.edges.clear();
+        for (number, corner) in (0_u32..).zip(&self.corners) {
+            let (triangle, k) = (corner.corner as usize / 3, corner.corner as usize % 3);
+            let vertices = mesh.triangles()[triangle];
+            for step in [1, 2] {
+                let other_end = vertices[(k + step) % 3];
+                self.edges.push((place_of_vertex[other_end as usize], number));
+            }
         }
     }
 

@@ -118,6 +118,11 @@ fn render_draws_masks_and_overlays_of_linemod() {
         ]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
+    let poses = out.join("out").display().to_string();
+    let output = pinpose(&["convert", &files[0], &files[1], &files[2], &poses, "--to", "overlays"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let bytes = |name: &str| std::fs::read(out.join(name)).unwrap();
+    assert!(bytes("out/overlays/000019.png") == bytes("000019_overlay.png"), "the same picture either way");
     let overlay = image::open(out.join("000019_overlay.png")).unwrap().into_rgb8();
     let photo = image::open(linemod.join("000019.png")).unwrap().into_rgb8();
     assert_eq!(overlay.dimensions(), (640, 480));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pinpose::formats::export::{
-    CameraAxes, Convention, ExportJob, ExportOptions, ExportPart, LengthUnit, PICTURES_SCHEMA, POSES_SCHEMA,
+    CameraAxes, Convention, ExportJob, ExportOptions, ExportPart, Exported, LengthUnit, PICTURES_SCHEMA, POSES_SCHEMA,
     PhotoChoice, PoseDirection,
 };
 use pinpose::formats::{NamedFile, ViewSettings};
@@ -34,11 +34,22 @@ fn job(scene: &Scene, options: ExportOptions) -> ExportJob {
     ExportJob::new(scene, &ViewSettings::default(), options)
 }
 
+/// An overlay, which takes a renderer, comes without bytes.
+fn file(made: Exported) -> NamedFile {
+    match made {
+        Exported::File(file) => file,
+        Exported::Overlay(request) => NamedFile { name: request.path, bytes: Arc::default() },
+    }
+}
+
+fn files(scene: &Scene, options: ExportOptions) -> impl Iterator<Item = NamedFile> {
+    job(scene, options).map(|made| file(made.unwrap()))
+}
+
 /// Exports into an empty folder.
 fn export_into(name: &str, scene: &Scene, options: ExportOptions) -> PathBuf {
     let folder = empty_folder(name);
-    for file in job(scene, options) {
-        let file = file.unwrap();
+    for file in files(scene, options) {
         let path = folder.join(&file.name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, &*file.bytes).unwrap();
@@ -346,7 +357,7 @@ fn csv_agrees(folder: &Path, scene: &Scene, convention: Convention) {
 fn what_is_ours_is_as_its_schema_says() {
     let scene = demo(1).scene();
     let options = ExportOptions { photos: first_photos(&scene, 2), ..ExportOptions::of(all_parts()) };
-    let files: Vec<NamedFile> = job(&scene, options).map(Result::unwrap).collect();
+    let files: Vec<NamedFile> = files(&scene, options).collect();
     for (name, schema) in [("poses.json", POSES_SCHEMA), ("pictures.json", PICTURES_SCHEMA)] {
         let schema: Value = serde_json::from_str(schema).unwrap();
         let validator = jsonschema::validator_for(&schema).unwrap();
@@ -383,7 +394,10 @@ fn a_job_tells_how_far_it_is_and_goes_on_after_an_error() {
     let (mut names, mut errors) = (BTreeSet::new(), Vec::new());
     for done in 1..=total {
         match job.next().unwrap() {
-            Ok(file) => assert!(names.insert(file.name.to_lowercase()), "{} comes twice", file.name),
+            Ok(made) => {
+                let name = file(made).name;
+                assert!(names.insert(name.to_lowercase()), "{name} comes twice");
+            }
             Err(error) => errors.push(error.to_string()),
         }
         assert_eq!(job.done(), done);
@@ -393,7 +407,7 @@ fn a_job_tells_how_far_it_is_and_goes_on_after_an_error() {
     assert_eq!(errors.len(), 2, "{errors:?}");
     assert!(errors[0].contains("boxes/000000.png") && errors[1].contains("rgb/000000"), "{errors:?}");
     for name in
-        ["readme.txt", "project.py", "pinpose.json", "bop/test/000001/scene_gt.json", "meshes/obj_000003.ply"]
+        ["readme.txt", "project.py", "pinpose.json", "bop/test/000001/scene_gt.json", "meshes/obj_000003.ply", "overlays/000001.png"]
     {
         assert!(names.contains(name), "{name}");
     }
@@ -460,7 +474,7 @@ fn a_rotated_photo_is_written_upright() {
         let is_plain = pinpose::photo::plain_extension(&file.bytes).is_some();
         scene.add_photo(Arc::new(asset));
         let files: Vec<NamedFile> =
-            job(&scene, ExportOptions::of([ExportPart::Bop])).map(Result::unwrap).collect();
+            files(&scene, ExportOptions::of([ExportPart::Bop])).collect();
         let photo = files.iter().find(|file| file.name.contains("/rgb/")).unwrap();
         if is_plain {
             assert_eq!(photo.bytes, file.bytes);

@@ -25,8 +25,8 @@ use thiserror::Error;
 
 use super::{Document, NamedFile, ViewSettings};
 use crate::raster::{MeasuredDepth, Silhouette, silhouettes};
-use crate::scene::Scene;
-use pictures::PhotoPictures;
+use crate::scene::{PhotoId, Scene};
+use pictures::{PhotoPictures, PictureKind};
 use plan::{Plan, raster_items};
 use steps::{Step, steps};
 
@@ -45,6 +45,22 @@ pub const PROJECT_SCRIPT: &str = include_str!("project.py");
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct ExportError(String);
+
+/// One file of an export.
+#[derive(Debug, Clone)]
+pub enum Exported {
+    File(NamedFile),
+    /// A picture that only a renderer can make.
+    Overlay(OverlayRequest),
+}
+
+/// A photo of [`ExportJob::scene`] with its objects over it, as PNG at the photo's resolution.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OverlayRequest {
+    pub photo: PhotoId,
+    /// Of the file that it is to become.
+    pub path: String,
+}
 
 /// An export under way: an iterator over its files, in an order in which they can be streamed. Names are paths with `/`.
 #[derive(Debug)]
@@ -75,6 +91,11 @@ impl ExportJob {
             document,
             plan,
         }
+    }
+
+    /// What is exported, as it was when the export began.
+    pub fn scene(&self) -> &Scene {
+        &self.plan.scene
     }
 
     /// How many files there are in all.
@@ -135,12 +156,15 @@ impl ExportJob {
 }
 
 impl Iterator for ExportJob {
-    type Item = Result<NamedFile, ExportError>;
+    type Item = Result<Exported, ExportError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let step = self.steps.next()?;
-        let made = self.make(step);
-        Some(made.map(|(name, bytes)| NamedFile { name, bytes: Arc::from(bytes) }).map_err(ExportError))
+        let made = match step {
+            Step::Picture(PictureKind::Overlay, photo, _) => self.overlay(photo).map(Exported::Overlay),
+            _ => self.make(step).map(|(name, bytes)| Exported::File(NamedFile { name, bytes: Arc::from(bytes) })),
+        };
+        Some(made.map_err(ExportError))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -29,6 +29,8 @@ pub enum ExportPart {
     Meshes,
     /// A BOP dataset.
     Bop,
+    /// Each photo with its objects over it.
+    Overlays,
     /// Silhouettes, each as if its object were alone.
     Masks,
     VisibleMasks,
@@ -42,7 +44,7 @@ pub enum ExportPart {
 
 impl ExportPart {
     /// In the order of the files: the part, its name on the command line, its title, and what it is in a sentence.
-    pub const ALL: [(Self, &'static str, &'static str, &'static str); 11] = [
+    pub const ALL: [(Self, &'static str, &'static str, &'static str); 12] = [
         (
             Self::Document,
             "json",
@@ -59,6 +61,7 @@ impl ExportPart {
             "BOP dataset",
             "scene_gt, scene_camera, scene_gt_info, masks, models, results CSV, COCO",
         ),
+        (Self::Overlays, "overlays", "Overlays", "Each photo with its objects over it"),
         (Self::Masks, "masks", "Masks", "Silhouettes of single objects, white on black"),
         (
             Self::VisibleMasks,

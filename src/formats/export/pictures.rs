@@ -19,6 +19,8 @@ const CANNOT_ENCODE: &str = "the picture cannot be encoded";
 /// What a picture shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PictureKind {
+    /// Drawn by a renderer; the others are made here.
+    Overlay,
     Mask,
     VisibleMask,
     Depth,
@@ -30,6 +32,7 @@ impl PictureKind {
     /// Also the folder that its pictures are in.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Overlay => "overlays",
             Self::Mask => "masks",
             Self::VisibleMask => "visible_masks",
             Self::Depth => "depth",
@@ -112,6 +115,14 @@ impl PhotoPictures {
         self.photo == photo_index
     }
 
+    /// Lists the overlay that a renderer is to draw; its path.
+    pub fn list_overlay(&mut self, plan: &Plan, planned: &PhotoPlan) -> String {
+        let kind = PictureKind::Overlay.name();
+        let path = paths::picture(plan, planned, kind, None);
+        self.pictures.push(PictureEntry { path: path.clone(), kind, object: None, mm_per_step: None });
+        path
+    }
+
     /// Makes a picture and lists it; the path and the file.
     pub fn make(
         &mut self,
@@ -127,7 +138,7 @@ impl PhotoPictures {
         let bytes = match (kind, of) {
             (PictureKind::Mask, Some((_, silhouette))) => mask_png(&silhouette.whole),
             (PictureKind::VisibleMask, Some((_, silhouette))) => mask_png(&silhouette.visible),
-            (PictureKind::Mask | PictureKind::VisibleMask, None) => None,
+            (PictureKind::Overlay, _) | (PictureKind::Mask | PictureKind::VisibleMask, None) => None,
             (PictureKind::Depth, _) => {
                 let (png, scale) = depth_png(&drawn(photo, &placed));
                 mm_per_step = Some(scale);

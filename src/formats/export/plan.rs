@@ -72,6 +72,12 @@ impl Plan {
                 scene.photos.iter().map(|photo| photo.id).filter(|id| !chosen.contains(id)).collect();
             others.into_iter().for_each(|id| scene.remove_photo(id));
         }
+        let is_annotated = |annotation: &Annotation| {
+            matches!(annotation.state, AnnotationState::Posed | AnnotationState::Confirmed)
+        };
+        if options.keep == Keep::Annotated {
+            scene.annotations.retain(|_, annotation| is_annotated(annotation));
+        }
         let stems: Vec<&str> = scene.photos.iter().map(|photo| file_stem(&photo.name)).collect();
         let names = unique_names(stems.iter().copied()).into_iter().enumerate();
         let photos = names
@@ -93,15 +99,11 @@ impl Plan {
 
     /// The objects whose poses in a photo are exported, in the scene's order.
     pub fn placed(&self, photo: &Photo) -> Vec<Placed<'_>> {
-        let is_kept = |annotation: &Annotation| {
-            self.options.keep == Keep::Everything
-                || matches!(annotation.state, AnnotationState::Posed | AnnotationState::Confirmed)
-        };
         let placed = self.scene.objects.iter().enumerate().filter_map(|(index, object)| {
             let annotation = self.scene.annotation(photo.id, object.id)?;
             Some(Placed { index, object, annotation })
         });
-        placed.filter(|placed| is_kept(placed.annotation)).collect()
+        placed.collect()
     }
 
     /// The name of an object in files.

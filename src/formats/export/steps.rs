@@ -3,7 +3,7 @@
 use super::bop::{self, BopStep};
 use super::pictures::{PhotoPictures, PictureKind, mask_png, pictures_json};
 use super::plan::{PhotoPlan, Plan};
-use super::{ExportJob, ExportPart, PROJECT_SCRIPT, paths, poses, readme, write_npy};
+use super::{ExportJob, ExportPart, OverlayRequest, PROJECT_SCRIPT, paths, poses, readme, write_npy};
 use crate::formats::write_document;
 use crate::photo::{decode, plain_extension, png_rgba};
 use crate::scene::Photo;
@@ -73,6 +73,7 @@ pub(super) fn steps(plan: &Plan) -> Vec<Step> {
 
 fn picture_steps(plan: &Plan) -> Vec<Step> {
     let parts = [
+        (ExportPart::Overlays, PictureKind::Overlay),
         (ExportPart::Masks, PictureKind::Mask),
         (ExportPart::VisibleMasks, PictureKind::VisibleMask),
         (ExportPart::Depth, PictureKind::Depth),
@@ -145,15 +146,31 @@ impl ExportJob {
     }
 
     fn picture(&mut self, kind: PictureKind, photo_index: usize, at: Option<usize>) -> Made {
+        self.begin_pictures(photo_index)?;
         let silhouettes = self.silhouettes(photo_index);
         let (planned, photo) = planned_photo(&self.plan, photo_index)?;
-        if !self.pictures.last().is_some_and(|last| last.is_of(photo_index)) {
-            self.pictures.push(PhotoPictures::new(&self.plan, photo_index, photo, &silhouettes));
-        }
         let placed = self.plan.placed(photo);
         let of = at.and_then(|at| Some((placed.get(at)?, silhouettes.get(at)?)));
         let pictures = self.pictures.last_mut().ok_or(GONE)?;
         pictures.make(&self.plan, planned, photo, kind, of)
+    }
+
+    /// What a renderer is to draw of a photo; it is listed among the pictures from now on.
+    pub(super) fn overlay(&mut self, photo_index: usize) -> Result<OverlayRequest, String> {
+        self.begin_pictures(photo_index)?;
+        let (planned, photo) = planned_photo(&self.plan, photo_index)?;
+        let pictures = self.pictures.last_mut().ok_or(GONE)?;
+        Ok(OverlayRequest { photo: photo.id, path: pictures.list_overlay(&self.plan, planned) })
+    }
+
+    /// Makes the photo the one whose pictures are listed.
+    fn begin_pictures(&mut self, photo_index: usize) -> Result<(), String> {
+        if !self.pictures.last().is_some_and(|last| last.is_of(photo_index)) {
+            let silhouettes = self.silhouettes(photo_index);
+            let (_, photo) = planned_photo(&self.plan, photo_index)?;
+            self.pictures.push(PhotoPictures::new(&self.plan, photo_index, photo, &silhouettes));
+        }
+        Ok(())
     }
 
     fn bop_file(&mut self, step: BopStep) -> Made {

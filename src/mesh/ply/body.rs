@@ -112,7 +112,7 @@ fn read_vertices(
     for _ in 0..element.count {
         for (property, &slot) in element.properties.iter().zip(&slot_of_property) {
             match property.kind {
-                Kind::Scalar(scalar) => row[slot] = values.number(scalar)?,
+                Kind::Scalar(scalar) => row[slot] = number(values, scalar)?,
                 Kind::List { count, item } => skip_list(values, count, item)?,
             }
         }
@@ -174,15 +174,15 @@ fn read_faces(
     for _ in 0..element.count {
         let triangles_before = triangles.len();
         look.begin_face();
-        for (number, property) in element.properties.iter().enumerate() {
+        for (property_number, property) in element.properties.iter().enumerate() {
             match property.kind {
-                Kind::Scalar(scalar) => face_colors.take(number, values.number(scalar)?),
-                Kind::List { count, item } if Some(number) == texture_coordinates => {
+                Kind::Scalar(scalar) => face_colors.take(property_number, number(values, scalar)?),
+                Kind::List { count, item } if Some(property_number) == texture_coordinates => {
                     for _ in 0..values.list_length(count, item)? {
-                        look.face_values.push(values.number(item)? as f32);
+                        look.face_values.push(number(values, item)? as f32);
                     }
                 }
-                Kind::List { count, item } if number == indices => {
+                Kind::List { count, item } if property_number == indices => {
                     let corners = values.list_length(count, item)?;
                     small_faces += usize::from(corners < 3);
                     read_polygon(values, corners, item, vertex_count, triangles)?;
@@ -212,11 +212,11 @@ fn read_polygon(
 ) -> Result<(), MeshError> {
     let (mut first, mut previous) = (0, 0);
     for corner in 0..corners {
-        let number = values.number(item)?;
-        let index = number as u32;
-        if f64::from(index) != number || index as usize >= vertex_count {
+        let named = number(values, item)?;
+        let index = named as u32;
+        if f64::from(index) != named || index as usize >= vertex_count {
             let problem =
-                format!("a face names vertex {number}, expected a whole number below {vertex_count}");
+                format!("a face names vertex {named}, expected a whole number below {vertex_count}");
             return Err(malformed(values.place(), problem));
         }
         match corner {
@@ -248,7 +248,7 @@ fn skip_element(element: &Element, values: &mut impl Values) -> Result<(), MeshE
     for _ in 0..element.count {
         for property in &element.properties {
             match property.kind {
-                Kind::Scalar(scalar) => drop(values.number(scalar)?),
+                Kind::Scalar(scalar) => drop(number(values, scalar)?),
                 Kind::List { count, item } => skip_list(values, count, item)?,
             }
         }
@@ -259,7 +259,15 @@ fn skip_element(element: &Element, values: &mut impl Values) -> Result<(), MeshE
 
 fn skip_list(values: &mut impl Values, count: Scalar, item: Scalar) -> Result<(), MeshError> {
     for _ in 0..values.list_length(count, item)? {
-        values.number(item)?;
+        number(values, item)?;
     }
     Ok(())
+}
+
+#[inline(always)]
+fn number(values: &mut impl Values, scalar: Scalar) -> Result<f64, MeshError> {
+    match values.number(scalar) {
+        Some(number) => Ok(number),
+        None => Err(values.problem()),
+    }
 }

@@ -7,7 +7,12 @@ use crate::mesh::{MeshError, Place};
 
 /// A stream of numbers. Every type of the format fits an `f64` exactly.
 pub(super) trait Values {
-    fn number(&mut self, scalar: Scalar) -> Result<f64, MeshError>;
+    /// `None` where there is none; [`Self::problem`] says why. The reason is not part of the answer, for millions of answers
+    /// that fit in registers are read several times as fast.
+    fn number(&mut self, scalar: Scalar) -> Option<f64>;
+
+    /// Why the last call of [`Self::number`] had none.
+    fn problem(&self) -> MeshError;
 
     /// Leaves what a row holds beyond what the header announces; whether that was anything. Only text shows it.
     fn end_row(&mut self) -> bool {
@@ -23,17 +28,23 @@ pub(super) trait Values {
     fn place(&self) -> Place;
 
     /// How many items follow: a whole number, and no more than the rest of the file can hold.
+    #[inline(always)]
     fn list_length(&mut self, count: Scalar, item: Scalar) -> Result<usize, MeshError> {
-        let number = self.number(count)?;
+        let Some(number) = self.number(count) else { return Err(self.problem()) };
         let length = number as usize;
         let most = self.remaining_bytes().saturating_add(1) / self.smallest_size(item);
         if length as f64 != number || length > most {
-            let problem =
-                format!("a list of {number} items, expected a whole number up to the {most} that can follow");
-            return Err(malformed(self.place(), problem));
+            return Err(bad_length(self.place(), number, most));
         }
         Ok(length)
     }
+}
+
+#[cold]
+fn bad_length(place: Place, number: f64, most: usize) -> MeshError {
+    let problem =
+        format!("a list of {number} items, expected a whole number up to the {most} that can follow");
+    malformed(place, problem)
 }
 
 /// Words between white space. A row may go on over several lines, for some programs wrap long ones, but the next row begins
@@ -42,11 +53,13 @@ pub(super) struct Ascii<'a> {
     bytes: &'a [u8],
     position: usize,
     line: usize,
+    /// The last word, if it was no number.
+    bad_word: Option<&'a [u8]>,
 }
 
 impl<'a> Ascii<'a> {
     pub fn new(bytes: &'a [u8], position: usize, line: usize) -> Self {
-        Self { bytes, position, line }
+        Self { bytes, position, line, bad_word: None }
     }
 
     fn next_word(&mut self) -> Option<&'a [u8]> {
@@ -61,13 +74,18 @@ impl<'a> Ascii<'a> {
 }
 
 impl Values for Ascii<'_> {
-    fn number(&mut self, _: Scalar) -> Result<f64, MeshError> {
-        let Some(word) = self.next_word() else {
-            return Err(malformed(self.place(), "the file ends here, expected more numbers"));
-        };
-        small_integer(word)
-            .or_else(|| parse_number(word))
-            .ok_or_else(|| malformed(self.place(), format!("expected a number, found {}", shown(word))))
+    fn number(&mut self, _: Scalar) -> Option<f64> {
+        let word = self.next_word()?;
+        let number = small_integer(word).or_else(|| parse_number(word));
+        self.bad_word = number.is_none().then_some(word);
+        number
+    }
+
+    fn problem(&self) -> MeshError {
+        match self.bad_word {
+            Some(word) => malformed(self.place(), format!("expected a number, found {}", shown(word))),
+            None => malformed(self.place(), "the file ends here, expected more numbers"),
+        }
     }
 
     fn end_row(&mut self) -> bool {
@@ -117,24 +135,21 @@ impl<'a, const BIG_ENDIAN: bool> Binary<'a, BIG_ENDIAN> {
         Self { bytes, position }
     }
 
-    #[inline]
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], MeshError> {
-        let Some(&chunk) = self.bytes.get(self.position..).and_then(|rest| rest.first_chunk::<N>()) else {
-            return Err(malformed(self.place(), "the file ends here, expected more data"));
-        };
+    #[inline(always)]
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let mut chunk = *self.bytes.get(self.position..)?.first_chunk::<N>()?;
         self.position += N;
-        let mut chunk = chunk;
         if BIG_ENDIAN {
             chunk.reverse();
         }
-        Ok(chunk)
+        Some(chunk)
     }
 }
 
 impl<const BIG_ENDIAN: bool> Values for Binary<'_, BIG_ENDIAN> {
-    #[inline]
-    fn number(&mut self, scalar: Scalar) -> Result<f64, MeshError> {
-        Ok(match scalar {
+    #[inline(always)]
+    fn number(&mut self, scalar: Scalar) -> Option<f64> {
+        Some(match scalar {
             Scalar::I8 => f64::from(i8::from_le_bytes(self.take()?)),
             Scalar::U8 => f64::from(u8::from_le_bytes(self.take()?)),
             Scalar::I16 => f64::from(i16::from_le_bytes(self.take()?)),
@@ -144,6 +159,10 @@ impl<const BIG_ENDIAN: bool> Values for Binary<'_, BIG_ENDIAN> {
             Scalar::F32 => f64::from(f32::from_le_bytes(self.take()?)),
             Scalar::F64 => f64::from_le_bytes(self.take()?),
         })
+    }
+
+    fn problem(&self) -> MeshError {
+        malformed(self.place(), "the file ends here, expected more data")
     }
 
     fn smallest_size(&self, scalar: Scalar) -> usize {
