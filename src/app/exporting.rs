@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use super::PinPose;
-use crate::formats::NamedFile;
 use super::pictures::PictureFor;
+use crate::formats::NamedFile;
 use crate::formats::export::{ExportJob, Exported, OverlayRequest, ZipStream, safe_file_name};
 use crate::platform::{self, ExportFolder, GrowingDownload};
 use crate::render::ExportKind;

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use super::draw::LazyRenderer;
 use super::{Failure, Outcome, open};
 use crate::formats::export::{
-    CameraAxes, ExportError, ExportJob, ExportOptions, ExportPart, Exported, LengthUnit, OverlayRequest, PhotoChoice,
-    PoseDirection, ZipStream,
+    CameraAxes, ExportError, ExportJob, ExportOptions, ExportPart, Exported, LengthUnit, OverlayRequest,
+    PhotoChoice, PoseDirection, ZipStream,
 };
 use crate::formats::{Keep, NamedFile, write_workspace};
 use crate::mesh::MeshUnit;

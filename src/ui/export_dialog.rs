@@ -2,23 +2,36 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Align, Button, Id, Layout, Modal, RichText, Ui, Vec2};
+use egui::{Align, Button, Id, Layout, Modal, RichText, ScrollArea, Ui, Vec2};
 
 use super::dialogs::BUTTON_SIZE;
 use super::theme;
 use crate::formats::Keep;
 use crate::formats::export::{CameraAxes, ExportOptions, ExportPart, LengthUnit, PhotoChoice, PoseDirection};
 use crate::platform::ExportFolder;
+use crate::scene::{AnnotationState, Photo, PhotoId};
 use crate::session::Session;
 
 const WIDTH: f32 = 660.0;
 const COLUMN_GAP: f32 = 28.0;
+const LIST_HEIGHT: f32 = 132.0;
 
 /// What was chosen last; it stays for the next export.
 #[derive(Debug, Default)]
 pub struct State {
     options: ExportOptions,
-    only_shown: bool,
+    which: Which,
+    /// Photos that were ticked; some may have gone since.
+    ticked: BTreeSet<PhotoId>,
+}
+
+/// Photos to export.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Which {
+    #[default]
+    All,
+    Shown,
+    Ticked,
 }
 
 /// What the user wants to be exported.
@@ -80,11 +93,16 @@ fn choices(ui: &mut Ui, session: &Session, state: &mut State) {
     ui.label(RichText::new("Photos").strong());
     ui.horizontal(|ui| {
         let all = if count == 1 { "All".to_owned() } else { format!("All {count}") };
-        ui.radio_value(&mut state.only_shown, false, all);
+        ui.radio_value(&mut state.which, Which::All, all);
         ui.add_enabled_ui(session.photo().is_some(), |ui| {
-            ui.radio_value(&mut state.only_shown, true, "The one that is shown");
+            ui.radio_value(&mut state.which, Which::Shown, "The one shown");
         });
+        ui.add_enabled_ui(count > 1, |ui| ui.radio_value(&mut state.which, Which::Ticked, "Some"));
     });
+    if state.which == Which::Ticked {
+        photo_list(ui, session, &mut state.ticked);
+        ui.add_space(4.0);
+    }
     let mut with_others = state.options.keep == Keep::Everything;
     let tooltip = "Else only what somebody posed or confirmed is exported";
     if ui.checkbox(&mut with_others, "Untouched and carried poses too").on_hover_text(tooltip).changed() {
@@ -132,6 +150,41 @@ fn choices(ui: &mut Ui, session: &Session, state: &mut State) {
     ui.add(egui::Label::new(RichText::new(words).small().weak()).wrap());
 }
 
+/// The photos with a tick each; a thousand cost what a dozen do.
+fn photo_list(ui: &mut Ui, session: &Session, ticked: &mut BTreeSet<PhotoId>) {
+    let scene = session.scene();
+    let is_done = |photo: &Photo| {
+        matches!(scene.photo_state(photo.id), Some(AnnotationState::Posed | AnnotationState::Confirmed))
+    };
+    ui.horizontal(|ui| {
+        if ui.small_button("None").clicked() {
+            ticked.clear();
+        }
+        if ui.small_button("Finished").on_hover_text("All whose objects are all posed").clicked() {
+            *ticked = scene.photos.iter().filter(|photo| is_done(photo)).map(|photo| photo.id).collect();
+        }
+        let count = scene.photos.iter().filter(|photo| ticked.contains(&photo.id)).count();
+        ui.weak(format!("{count} of {}", scene.photos.len()));
+    });
+    let row_height = ui.spacing().interact_size.y;
+    ScrollArea::vertical()
+        .min_scrolled_height(LIST_HEIGHT)
+        .max_height(LIST_HEIGHT)
+        .auto_shrink([false, true])
+        .show_rows(ui, row_height, scene.photos.len(), |ui, rows| {
+            for photo in scene.photos.get(rows).unwrap_or_default() {
+                let mut is_ticked = ticked.contains(&photo.id);
+                if ui.checkbox(&mut is_ticked, &photo.name).changed() {
+                    if is_ticked {
+                        ticked.insert(photo.id);
+                    } else {
+                        ticked.remove(&photo.id);
+                    }
+                }
+            }
+        });
+}
+
 fn choice<T: PartialEq + Copy>(ui: &mut Ui, label: &str, value: &mut T, options: [(T, &str, &str); 2]) {
     ui.horizontal(|ui| {
         ui.allocate_ui_with_layout(Vec2::new(84.0, 20.0), Layout::left_to_right(Align::Center), |ui| {
@@ -146,7 +199,9 @@ fn choice<T: PartialEq + Copy>(ui: &mut Ui, label: &str, value: &mut T, options:
 
 /// Export, into a folder, and Cancel; true if the dialog is done.
 fn buttons(ui: &mut Ui, session: &Session, state: &State, request: &mut Option<ExportRequest>) -> bool {
-    let is_something = !state.options.parts.is_empty();
+    let photos = chosen_photos(session, state);
+    let has_photos = !matches!(&photos, PhotoChoice::These(photos) if photos.is_empty());
+    let is_something = has_photos && !state.options.parts.is_empty();
     let (mut into_file, mut into_folder, mut is_cancelled) = (false, false, false);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let button = theme::primary_button("Export").min_size(BUTTON_SIZE);
@@ -158,10 +213,22 @@ fn buttons(ui: &mut Ui, session: &Session, state: &State, request: &mut Option<E
         is_cancelled = ui.add(Button::new("Cancel").min_size(BUTTON_SIZE)).clicked();
     });
     if into_file || into_folder {
-        let shown = session.photo().filter(|_| state.only_shown).map(|photo| photo.id);
-        let photos = shown.map_or(PhotoChoice::All, |photo| PhotoChoice::These(BTreeSet::from([photo])));
         *request =
             Some(ExportRequest { options: ExportOptions { photos, ..state.options.clone() }, into_folder });
     }
     into_file || into_folder || is_cancelled
+}
+
+/// A photo that has gone is not exported.
+fn chosen_photos(session: &Session, state: &State) -> PhotoChoice {
+    match state.which {
+        Which::All => PhotoChoice::All,
+        Which::Shown => {
+            session.photo().map_or(PhotoChoice::All, |photo| PhotoChoice::These(BTreeSet::from([photo.id])))
+        }
+        Which::Ticked => {
+            let photos = session.scene().photos.iter().map(|photo| photo.id);
+            PhotoChoice::These(photos.filter(|photo| state.ticked.contains(photo)).collect())
+        }
+    }
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pinpose::formats::export::{
-    CameraAxes, Convention, ExportJob, ExportOptions, ExportPart, Exported, LengthUnit, PICTURES_SCHEMA, POSES_SCHEMA,
-    PhotoChoice, PoseDirection,
+    CameraAxes, Convention, ExportJob, ExportOptions, ExportPart, Exported, LengthUnit, PICTURES_SCHEMA,
+    POSES_SCHEMA, PhotoChoice, PoseDirection,
 };
 use pinpose::formats::{NamedFile, ViewSettings};
 use pinpose::math::{Distortion, Intrinsics};
@@ -406,9 +406,14 @@ fn a_job_tells_how_far_it_is_and_goes_on_after_an_error() {
     // The photo with boxes on it, and the photo itself written anew for BOP.
     assert_eq!(errors.len(), 2, "{errors:?}");
     assert!(errors[0].contains("boxes/000000.png") && errors[1].contains("rgb/000000"), "{errors:?}");
-    for name in
-        ["readme.txt", "project.py", "pinpose.json", "bop/test/000001/scene_gt.json", "meshes/obj_000003.ply", "overlays/000001.png"]
-    {
+    for name in [
+        "readme.txt",
+        "project.py",
+        "pinpose.json",
+        "bop/test/000001/scene_gt.json",
+        "meshes/obj_000003.ply",
+        "overlays/000001.png",
+    ] {
         assert!(names.contains(name), "{name}");
     }
 }
@@ -473,8 +478,7 @@ fn a_rotated_photo_is_written_upright() {
         let mut scene = Scene::default();
         let is_plain = pinpose::photo::plain_extension(&file.bytes).is_some();
         scene.add_photo(Arc::new(asset));
-        let files: Vec<NamedFile> =
-            files(&scene, ExportOptions::of([ExportPart::Bop])).collect();
+        let files: Vec<NamedFile> = files(&scene, ExportOptions::of([ExportPart::Bop])).collect();
         let photo = files.iter().find(|file| file.name.contains("/rgb/")).unwrap();
         if is_plain {
             assert_eq!(photo.bytes, file.bytes);

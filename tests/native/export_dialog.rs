@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
+use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use pinpose::formats::Keep;
@@ -12,7 +13,7 @@ use pinpose::interact::Hands;
 use pinpose::session::{Command, CommandId, Effect, Session};
 use pinpose::ui::{self, ExportRequest, UiState};
 
-use crate::support::{NOW_MS, quiet_surroundings, small_session};
+use crate::support::{NOW_MS, drop_files, flat_photo, quiet_surroundings, small_session};
 
 type Requests = Rc<RefCell<Vec<ExportRequest>>>;
 
@@ -52,7 +53,7 @@ fn what_was_chosen_is_asked_for() {
         "BOP dataset",
         "OpenGL",
         "Camera's pose",
-        "The one that is shown",
+        "The one shown",
         "Untouched and carried poses too",
         "Export",
     ] {
@@ -82,4 +83,33 @@ fn nothing_is_exported_without_a_choice_or_after_cancel() {
     click(&mut harness, "Visible masks");
     click(&mut harness, "Cancel");
     assert!(requests.take().is_empty() && harness.query_by_label("Export files").is_none());
+}
+
+#[test]
+fn photos_are_chosen_one_by_one() {
+    let mut session = small_session();
+    let more = (0..4).map(|number| flat_photo(&format!("more-{number}.png"), 64, 48 + number));
+    drop_files(&mut session, &more.collect::<Vec<_>>(), None);
+    let photos: Vec<_> = session.scene().photos.iter().map(|photo| (photo.id, photo.name.clone())).collect();
+    let (mut harness, requests) = opened(session);
+    click(&mut harness, "Some");
+    click(&mut harness, "Export");
+    assert!(requests.take().is_empty(), "no photo is ticked yet");
+    for name in ["more-1.png", "more-0.png", "more-1.png", "more-2.png"] {
+        let (_, name) =
+            photos.iter().find(|(_, known)| known.starts_with(name.trim_end_matches(".png"))).unwrap();
+        // The strip of photos shows the name too.
+        harness.get_by_role_and_label(Role::CheckBox, name).click();
+        harness.run();
+    }
+    click(&mut harness, "Export");
+    let asked = requests.take();
+    let ids = |names: [&str; 2]| {
+        photos
+            .iter()
+            .filter(|(_, known)| names.iter().any(|name| known.starts_with(name)))
+            .map(|(id, _)| *id)
+            .collect()
+    };
+    assert_eq!(asked[0].options.photos, PhotoChoice::These(ids(["more-0", "more-2"])));
 }

@@ -162,7 +162,9 @@ impl Iterator for ExportJob {
         let step = self.steps.next()?;
         let made = match step {
             Step::Picture(PictureKind::Overlay, photo, _) => self.overlay(photo).map(Exported::Overlay),
-            _ => self.make(step).map(|(name, bytes)| Exported::File(NamedFile { name, bytes: Arc::from(bytes) })),
+            _ => self
+                .make(step)
+                .map(|(name, bytes)| Exported::File(NamedFile { name, bytes: Arc::from(bytes) })),
         };
         Some(made.map_err(ExportError))
     }
