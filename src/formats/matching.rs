@@ -7,7 +7,8 @@ use super::incoming::PhotoLook;
 use super::{FileKey, Incoming, IncomingCamera, IncomingObject, PosesAs};
 use crate::math::Pose;
 use crate::scene::{
-    Annotation, CameraOrigin, MeshAsset, ObjectId, Photo, PhotoId, Reference, Scene, file_stem,
+    Annotation, AnnotationState, CameraOrigin, MeshAsset, ObjectId, Photo, PhotoId, Reference, Scene,
+    file_stem,
 };
 
 /// What became of an import.
@@ -113,11 +114,21 @@ impl Incoming {
         objects: &[Option<ObjectId>],
         outcome: &mut Outcome,
     ) {
+        let mut frames = Vec::with_capacity(objects.len());
+        for (incoming, id) in self.objects.iter().zip(objects) {
+            let frame = id.map(|id| take_frame(scene, id, incoming)).transpose();
+            frames.push(frame.unwrap_or_else(|problem| {
+                outcome.problems.push(problem);
+                None
+            }));
+        }
         let mut poses = BTreeMap::new();
         for (photo, id) in self.photos.iter().zip(photos) {
             for pose in &photo.poses {
-                if let (Some(photo), Some(&Some(object))) = (*id, objects.get(pose.object)) {
-                    poses.insert((photo, object), pose.camera_from_object);
+                let object = objects.get(pose.object).copied().flatten();
+                let frame = frames.get(pose.object).copied().flatten();
+                if let (Some(photo), Some(object), Some(theirs_from_ours)) = (*id, object, frame) {
+                    poses.insert((photo, object), pose.camera_from_object * theirs_from_ours);
                 }
             }
         }
@@ -210,6 +221,34 @@ fn restore_look(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> O
         }
         Err(error) => Some(format!("{}: mesh_from_file cannot be applied: {error}", object.name)),
     }
+}
+
+/// Two frames of a mesh whose rotation is this far from one are not a turn of each other; products of rounded matrices are
+/// nearer by far.
+const RIGID_TOLERANCE: f64 = 1e-6;
+
+/// What takes a mesh's frame in the scene to that of a reference's poses. A mesh that has no poses yet takes the reference's
+/// frame over; one whose frames differ by more than a turn and a shift cannot have these poses.
+fn take_frame(scene: &mut Scene, id: ObjectId, incoming: &IncomingObject) -> Result<Pose, String> {
+    let Some(object) = scene.object(id) else { return Ok(Pose::IDENTITY) };
+    let present = object.mesh_from_file;
+    let Some(wanted) = incoming.mesh_from_file.filter(|wanted| *wanted != present) else {
+        return Ok(Pose::IDENTITY);
+    };
+    if !is_posed(scene, id) {
+        let alone = IncomingObject { look: None, ..incoming.clone() };
+        return restore_look(scene, id, &alone).map_or(Ok(Pose::IDENTITY), Err);
+    }
+    Pose::from_mat4(&(wanted * present.inverse()), RIGID_TOLERANCE).ok_or_else(|| {
+        format!("{}: left out, its mesh has another size or is mirrored there (mesh_from_file)", object.name)
+    })
+}
+
+/// Has anybody, or a reference, said where the object is?
+fn is_posed(scene: &Scene, id: ObjectId) -> bool {
+    let is_touched = |annotation: &Annotation| annotation.state != AnnotationState::Untouched;
+    scene.annotations.iter().any(|((_, object), annotation)| *object == id && is_touched(annotation))
+        || scene.references.iter().any(|reference| reference.poses.keys().any(|(_, object)| *object == id))
 }
 
 /// A reference of the same name is replaced: the file was dropped again.

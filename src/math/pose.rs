@@ -75,6 +75,13 @@ impl Pose {
         Self::from_parts(rotation_transposed.transpose(), DVec3::new(x[3], y[3], z[3]))
     }
 
+    /// The matrix as a pose, if it is one to within `tolerance`; see [`Self::from_parts`] for what it bounds.
+    pub fn from_mat4(matrix: &DMat4, tolerance: f64) -> Option<Self> {
+        let rotation = DMat3::from_mat4(*matrix);
+        let (pose, defect) = Self::from_parts(rotation, matrix.w_axis.truncate()).ok()?;
+        (defect < tolerance).then_some(pose)
+    }
+
     /// The row-major 4×4.
     pub fn to_rows(&self) -> [[f64; 4]; 4] {
         let [x, y, z] = self.rotation_rows();

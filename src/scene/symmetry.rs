@@ -67,7 +67,8 @@ impl Symmetries {
     /// all, a stretch across an axis ends the turns about it.
     pub fn of_transformed(&self, new_from_old: &DMat4) -> Self {
         let old_from_new = new_from_old.inverse();
-        let carried = |symmetry: &Pose| rigid(&(*new_from_old * symmetry.to_mat4() * old_from_new));
+        let carried =
+            |symmetry: &Pose| Pose::from_mat4(&(*new_from_old * symmetry.to_mat4() * old_from_new), SAME);
         let discrete = self.discrete.iter().filter_map(carried).collect();
         let continuous = self.continuous.iter().filter_map(|symmetry| {
             // A quarter turn takes an ellipse's long axis to its short one: if that is rigid, every turn is.
@@ -89,13 +90,6 @@ impl Symmetries {
             self.discrete.push(symmetry);
         }
     }
-}
-
-/// The matrix as a pose, if it is one.
-fn rigid(matrix: &DMat4) -> Option<Pose> {
-    let rotation = DMat3::from_mat4(*matrix);
-    let (pose, defect) = Pose::from_parts(rotation, matrix.w_axis.truncate()).ok()?;
-    (defect < SAME).then_some(pose)
 }
 
 #[cfg(test)]

@@ -39,12 +39,13 @@ impl Session {
     pub(super) fn import(&mut self, batch: Batch, now_ms: f64) -> Vec<Effect> {
         self.finish_gesture();
         let before = self.snapshot();
+        let mut effects = Vec::new();
         let new_photos: Vec<PhotoId> =
-            batch.photos.iter().map(|asset| self.scene.add_photo(asset.clone())).collect();
+            batch.photos.iter().map(|asset| self.add_dropped_photo(asset, &mut effects)).collect();
         if let Some(first) = new_photos.first() {
             self.photo = Some(*first);
         }
-        let mut effects = self.add_meshes(&batch, now_ms);
+        effects.extend(self.add_meshes(&batch, now_ms));
         for camera in batch.cameras {
             self.take_camera(camera, &new_photos);
         }
@@ -72,6 +73,20 @@ impl Session {
         }
         effects.extend(pins.map(|pins| self.take_pins(pins, now_ms)));
         effects
+    }
+
+    /// The photo; one with the same content that is there already stays the only one, which is said.
+    fn add_dropped_photo(&mut self, asset: &Arc<PhotoAsset>, effects: &mut Vec<Effect>) -> PhotoId {
+        let id = self.scene.add_photo(asset.clone());
+        let known = self.scene.photo(id).map_or("", |photo| &photo.asset.file_name);
+        if known != asset.file_name {
+            let name = &asset.file_name;
+            let text = format!(
+                "{name} is the same picture as {known}, which is open already: it is not added twice"
+            );
+            effects.push(Effect::Notify(Notice::warning(text)));
+        }
+        id
     }
 
     fn take_pins(&mut self, pins: Vec<Pin>, now_ms: f64) -> Effect {

@@ -8,8 +8,8 @@ use pinpose::formats::{
     read_mesh_with, read_workspace, write_document, write_workspace,
 };
 use pinpose::math::Pose;
-use pinpose::scene::PoseSource;
-use pinpose::session::{Batch, Command, Opening, Session};
+use pinpose::scene::{MeshFrame, PoseSource};
+use pinpose::session::{Batch, Command, Effect, ObjectChange, Opening, Session};
 use proptest::prelude::*;
 
 use crate::support::{NOW_MS, drop_files, linemod_session, small_session, text_file};
@@ -225,4 +225,73 @@ fn what_the_first_version_has_written_opens() {
     assert_eq!(document.name, "Example");
     let again = write_document(&document);
     assert_eq!(read_document(again.as_bytes()).unwrap(), document);
+}
+
+/// A session whose box was changed and posed, as a document.
+fn saved_with_frame(change: impl Fn(&MeshFrame) -> MeshFrame, pose: Pose) -> (MeshFrame, NamedFile) {
+    let mut session = with_pose(pose);
+    let (_, object, _) = session.selected_annotation().unwrap();
+    let frame = change(&MeshFrame(session.scene().object(object).unwrap().mesh_from_file));
+    session.apply(Command::EditObject(object, ObjectChange::MeshFrame(frame)), NOW_MS).unwrap();
+    // Changing its frame may have moved it.
+    let command = Command::SetPose {
+        photo: session.photo().unwrap().id,
+        object,
+        camera_from_object: pose,
+        source: PoseSource::Manual,
+    };
+    session.apply(command, NOW_MS).unwrap();
+    (frame, text_file("theirs.json", &write_document(&session.document(Keep::Annotated))))
+}
+
+#[test]
+fn a_reference_brings_the_frame_of_a_mesh_that_has_no_poses_yet() {
+    let pose = Pose::from_translation(DVec3::new(3.0, 4.0, 700.0));
+    let (frame, saved) = saved_with_frame(|frame| frame.with_spacing(2, 2.0).unwrap(), pose);
+    let mut session = small_session();
+    drop_files(&mut session, &[saved], Some(PosesAs::Reference));
+    let scene = session.scene();
+    assert_eq!(scene.objects[0].mesh_from_file, frame.0);
+    assert_eq!(scene.references[0].poses.values().next(), Some(&pose));
+}
+
+#[test]
+fn a_reference_is_turned_into_the_frame_that_a_posed_mesh_has() {
+    let pose = Pose::exp(DVec3::new(0.3, -0.2, 0.1), DVec3::ZERO).translated(DVec3::Z * 700.0);
+    let (frame, saved) = saved_with_frame(|frame| frame.with_up_axis(1), pose);
+    let mut session = with_pose(Pose::from_translation(DVec3::Z * 500.0));
+    drop_files(&mut session, &[saved], Some(PosesAs::Reference));
+    let scene = session.scene();
+    let ours = scene.references[0].poses.values().next().unwrap();
+    let at = |pose: &Pose, frame: &MeshFrame| {
+        pose.transform_point(frame.0.transform_point3(DVec3::new(1.0, 2.0, 3.0)))
+    };
+    let unchanged = MeshFrame(scene.objects[0].mesh_from_file);
+    assert_ne!(unchanged.0, frame.0);
+    // Two products of rounded rotations, of a point 700 mm away.
+    assert!(at(ours, &unchanged).distance(at(&pose, &frame)) < 1e-9);
+
+    let (_, larger) = saved_with_frame(|frame| frame.with_spacing(0, 2.0).unwrap(), pose);
+    let effects = drop_files(
+        &mut session,
+        &[NamedFile { name: "larger.json".to_owned(), ..larger }],
+        Some(PosesAs::Reference),
+    );
+    assert_eq!(session.scene().references.len(), 1);
+    let is_said =
+        |effect: &Effect| matches!(effect, Effect::Notify(notice) if notice.text.contains("another size"));
+    assert!(effects.iter().any(is_said), "{effects:?}");
+}
+
+#[test]
+fn a_photo_that_is_open_under_another_name_is_not_added_silently() {
+    let mut session = small_session();
+    let effects = drop_files(&mut session, &[crate::support::flat_photo("copy.png", 640, 480)], None);
+    assert_eq!(session.scene().photos.len(), 1);
+    assert!(
+        matches!(&effects[..], [Effect::Notify(notice)] if notice.text.contains("copy.png") && notice.text.contains("photo.png")),
+        "{effects:?}"
+    );
+    // The same file again is what it was.
+    assert_eq!(drop_files(&mut session, &[crate::support::flat_photo("photo.png", 640, 480)], None), []);
 }
