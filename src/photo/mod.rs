@@ -13,7 +13,7 @@ pub use depth::{DepthPixels, decode_depth, is_depth_like};
 pub use encode::{png_gray8, png_gray16, png_rgba};
 pub use kind::{foreign_kind, is_picture};
 pub use mip::half_size;
-pub use stored::plain_extension;
+pub use stored::{is_grey, plain_extension};
 pub use thumbnail::thumbnail;
 
 /// A decoded photo: RGBA rows from the top, 8 bits a channel, sRGB, upright (EXIF orientation applied).

@@ -505,3 +505,24 @@ fn jpegs(folder: &Path) -> Vec<PathBuf> {
     found.sort();
     found
 }
+
+/// Of a scene without colours BOP's folder is another one, and it is found there again.
+#[test]
+fn grey_photos_go_into_the_folder_that_bop_has_for_them() {
+    let mut scene = demo(1).scene();
+    let options = ExportOptions { photos: first_photos(&scene, 2), ..ExportOptions::of([ExportPart::Bop]) };
+    let mut grey_first = |count: usize| {
+        for photo in scene.photos.iter_mut().take(count) {
+            let grey = image::load_from_memory(&photo.asset.bytes).unwrap().into_luma8();
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            grey.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+            let asset = PhotoAsset { bytes: Arc::from(bytes.into_inner()), ..(*photo.asset).clone() };
+            photo.asset = Arc::new(asset);
+        }
+        let names: BTreeSet<String> = files(&scene, options.clone()).map(|file| file.name).collect();
+        ["rgb", "gray"]
+            .map(|folder| names.iter().filter(|name| name.contains(&format!("/{folder}/"))).count())
+    };
+    assert_eq!(grey_first(1), [2, 0], "one has colours still");
+    assert_eq!(grey_first(2), [0, 2]);
+}

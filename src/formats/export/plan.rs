@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::meshes::{MeshPlan, mesh_plans};
 use super::names::{numbers_of, unique_names};
-use super::{ExportOptions, PhotoChoice};
+use super::{ExportOptions, ExportPart, PhotoChoice};
 use crate::formats::Keep;
 use crate::math::Pose;
+use crate::photo::is_grey;
 use crate::raster::RasterItem;
 use crate::scene::{Annotation, AnnotationState, Object, Photo, PhotoId, Scene, file_stem};
 
@@ -21,6 +22,8 @@ pub(super) struct Plan {
     pub models: Vec<ModelPlan>,
     /// Of each object, for one folder of all.
     pub meshes: Vec<MeshPlan>,
+    /// BOP's folder of photos: `gray` if none of them has colours.
+    pub photo_folder: &'static str,
 }
 
 #[derive(Debug)]
@@ -89,7 +92,12 @@ impl Plan {
         let objects =
             names.into_iter().zip(model_of).map(|(name, model)| ObjectPlan { name, model }).collect();
         let meshes = mesh_plans(scene.objects.iter());
-        Self { photos, objects, models, meshes, options, scene }
+        let is_bop = options.parts.contains(&ExportPart::Bop);
+        let is_grey = is_bop
+            && !scene.photos.is_empty()
+            && scene.photos.iter().all(|photo| is_grey(&photo.asset.bytes));
+        let photo_folder = if is_grey { "gray" } else { "rgb" };
+        Self { photos, objects, models, meshes, options, scene, photo_folder }
     }
 
     /// The photo of a plan of this scene.

@@ -210,9 +210,10 @@ impl ExportJob {
         let (planned, photo) = planned_photo(&self.plan, photo_index)?;
         let as_it_is = plain_extension(&photo.asset.bytes);
         let extension = as_it_is.unwrap_or("png");
-        let file_name = format!("rgb/{:06}.{extension}", planned.image_id);
+        let folder = self.plan.photo_folder;
+        let file_name = format!("{folder}/{:06}.{extension}", planned.image_id);
         self.bop.add(&self.plan, planned, photo, &silhouettes, file_name);
-        let path = bop::image_path(&self.plan, "rgb", planned.image_id, extension);
+        let path = bop::image_path(&self.plan, folder, planned.image_id, extension);
         let bytes = match as_it_is {
             Some(_) => photo.asset.bytes.to_vec(),
             None => upright_png(photo).map_err(|reason| format!("{path}: {reason}"))?,
