@@ -38,6 +38,11 @@ impl DrawnAhead {
         Self(Mutex::new(drawn))
     }
 
+    /// Has it not been drawn yet?
+    pub fn is_fresh(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
     pub fn take(&self) -> Option<DrawnMesh> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

@@ -10,7 +10,9 @@ use super::lines::EdgeInstance;
 use super::surfaces::Surfaces;
 use super::uniforms::draws_edges;
 use super::{Gpu, Usage, ViewSlot};
-use crate::mesh::{CoarseMesh, DrawnMesh, Mesh, ShadingGroup, ShadingMesh, ShadingVertex, mesh_edges};
+use crate::mesh::{
+    CoarseMesh, DrawnMesh, Mesh, ShadingGroup, ShadingMesh, ShadingVertex, mesh_edges, shading_vertices,
+};
 use crate::scene::{MeshAsset, OverlayMode};
 
 /// A mesh that none of a view's last so many pictures has shown, nor any other view's, is dropped.
@@ -69,9 +71,12 @@ pub struct Meshes {
 #[derive(Debug)]
 struct Kept {
     mesh: Arc<MeshAsset>,
-    buffers: MeshBuffers,
+    /// Uploaded when it is drawn for the first time: a coarse copy may be shown before it.
+    whole: Option<MeshBuffers>,
+    waiting: Option<ShadingMesh>,
     /// Of a mesh of very many triangles, to be drawn while things move.
     coarse: Option<(CoarseMesh, MeshBuffers)>,
+    textures: Vec<wgpu::BindGroup>,
     /// The number of the last picture that showed it, of each view.
     last_pictures: [Option<u64>; ViewSlot::COUNT],
 }
@@ -86,14 +91,14 @@ impl Meshes {
         self.kept.retain(|kept| kept.last_pictures.iter().zip(pictures).any(is_recent));
     }
 
-    /// Makes sure that a mesh is on the GPU, with what the mode needs.
+    /// Makes sure that a mesh is on the GPU, with what the mode needs, as exact as [`Self::get`] is going to be asked for it.
     pub fn ensure(
         &mut self,
         gpu: &Gpu,
         usage: &Usage,
         slot: ViewSlot,
         mesh: &Arc<MeshAsset>,
-        mode: OverlayMode,
+        (mode, tolerance_mm): (OverlayMode, f64),
         surfaces: &Surfaces,
     ) {
         let picture = Some(self.pictures[slot as usize]);
@@ -104,11 +109,18 @@ impl Meshes {
         });
         let kept = &mut self.kept[position];
         kept.last_pictures[slot as usize] = picture;
-        if draws_edges(mode) {
-            kept.buffers.edges.get_or_insert_with(|| upload_edges(gpu, usage, &mesh.mesh));
-            if let Some((coarse, buffers)) = &mut kept.coarse {
-                buffers.edges.get_or_insert_with(|| upload_edges(gpu, usage, &coarse.mesh));
+        let (mesh, buffers) = match &mut kept.coarse {
+            Some((coarse, buffers)) if coarse.cell_mm <= tolerance_mm => (&coarse.mesh, buffers),
+            _ => {
+                let shading =
+                    |waiting: Option<ShadingMesh>| waiting.unwrap_or_else(|| shading_vertices(&mesh.mesh));
+                let (waiting, textures) = (&mut kept.waiting, &kept.textures);
+                let upload = || upload(gpu, usage, &shading(waiting.take()), textures);
+                (&mesh.mesh, kept.whole.get_or_insert_with(upload))
             }
+        };
+        if draws_edges(mode) {
+            buffers.edges.get_or_insert_with(|| upload_edges(gpu, usage, mesh));
         }
     }
 
@@ -116,8 +128,10 @@ impl Meshes {
     /// is one.
     pub fn get(&self, mesh: &Arc<MeshAsset>, tolerance_mm: f64) -> Option<&MeshBuffers> {
         let kept = self.kept.iter().find(|kept| Arc::ptr_eq(&kept.mesh, mesh))?;
-        let coarse = kept.coarse.as_ref().filter(|(coarse, _)| coarse.cell_mm <= tolerance_mm);
-        Some(coarse.map_or(&kept.buffers, |(_, buffers)| buffers))
+        match &kept.coarse {
+            Some((coarse, buffers)) if coarse.cell_mm <= tolerance_mm => Some(buffers),
+            _ => kept.whole.as_ref(),
+        }
     }
 }
 
@@ -133,8 +147,10 @@ impl Kept {
         });
         Self {
             mesh: mesh.clone(),
-            buffers: upload(gpu, usage, &drawn.shading, &textures),
+            whole: None,
+            waiting: Some(drawn.shading),
             coarse,
+            textures,
             last_pictures: [None; ViewSlot::COUNT],
         }
     }

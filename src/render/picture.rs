@@ -37,7 +37,8 @@ pub struct Picture {
     pub surroundings: Option<Surroundings>,
     /// Around the photo.
     pub background: Rgb,
-    /// While a gesture moves things: meshes of very many triangles are drawn coarser.
+    /// While a gesture moves things, and when a mesh is seen for the first time: meshes of very many triangles are drawn
+    /// coarser.
     pub in_motion: bool,
 }
 
@@ -204,6 +205,11 @@ pub fn picture_of(subject: &Subject<'_>) -> Option<Picture> {
 }
 
 impl Picture {
+    /// Is a mesh of very many triangles in it that has never been drawn?
+    pub fn has_fresh_mesh(&self) -> bool {
+        self.items.iter().any(|item| item.mesh.drawn.is_fresh())
+    }
+
     pub(super) fn shows_meshes(&self) -> bool {
         self.look.layers != Layers::PhotoOnly
     }

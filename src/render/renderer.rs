@@ -3,6 +3,7 @@
 use wgpu::util::DeviceExt;
 
 use super::base::base_parts;
+use super::extent::tolerance_mm;
 use super::meshes::Meshes;
 use super::occluder::OccluderTexture;
 use super::passes::{Passes, begin_pass};
@@ -160,7 +161,8 @@ impl Renderer {
             return;
         }
         let picture = &wanted.picture;
-        self.upload_meshes(slot, picture);
+        let pixels_per_photo_pixel = f64::from(wanted.size[0]) / picture.rect.size().x;
+        self.upload_meshes(slot, picture, pixels_per_photo_pixel);
         if let Some(occluder) = &picture.occluder {
             self.occluder.ensure(&self.gpu, &self.usage, &self.pipelines, occluder);
         }
@@ -180,18 +182,18 @@ impl Renderer {
                 view,
                 targets,
                 picture,
-                pixels_per_photo_pixel: f64::from(wanted.size[0]) / picture.rect.size().x,
+                pixels_per_photo_pixel,
             };
             passes.record(encoder, wanted.with_ids);
         }
         self.views[slot as usize].drawn = Some(wanted);
     }
 
-    fn upload_meshes(&mut self, slot: ViewSlot, picture: &Picture) {
+    fn upload_meshes(&mut self, slot: ViewSlot, picture: &Picture, pixels_per_photo_pixel: f64) {
         self.meshes.begin_picture(slot);
         for item in picture.items.iter().chain(&picture.ghosts) {
-            let mode = picture.look.mode;
-            self.meshes.ensure(&self.gpu, &self.usage, slot, &item.mesh, mode, &self.surfaces);
+            let need = (picture.look.mode, tolerance_mm(picture, item, pixels_per_photo_pixel));
+            self.meshes.ensure(&self.gpu, &self.usage, slot, &item.mesh, need, &self.surfaces);
         }
     }
 

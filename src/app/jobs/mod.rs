@@ -174,22 +174,14 @@ fn read_request(request: &[u8]) -> Option<(u8, NamedFile, Vec<NamedFile>)> {
 
 /// Runs one job: in the worker, or on the other thread.
 pub fn run_job(request: &[u8]) -> Vec<u8> {
-    let mut reply = Writer::default();
-    match answer(request) {
-        Some(Ok(bytes)) => {
-            reply.byte(1);
-            reply.raw(&bytes);
-        }
-        Some(Err(message)) => {
-            reply.byte(0);
-            reply.bytes(message.as_bytes());
-        }
-        None => {
-            reply.byte(0);
-            reply.bytes(b"the request to the worker was damaged");
-        }
-    }
-    reply.finish()
+    let damaged = || Err("the request to the worker was damaged".to_owned());
+    let (mut reply, is_done) = match answer(request).unwrap_or_else(damaged) {
+        Ok(bytes) => (bytes, true),
+        Err(message) => (message.into_bytes(), false),
+    };
+    // Last, where it moves nothing: a mesh is a hundred megabytes.
+    reply.push(u8::from(is_done));
+    reply
 }
 
 fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
@@ -218,24 +210,23 @@ fn read_reply(
     companions: &[NamedFile],
     reply: &[u8],
 ) -> Result<Done, String> {
-    let mut reader = Reader::new(reply);
-    let done = match reader.byte() {
-        Some(1) if kind == JobKind::Photo => read_photo_reply(file, &mut reader),
-        Some(1) if kind == JobKind::Thumbnail => read_pixels(&mut reader).map(Done::Thumbnail),
-        Some(1) if kind == JobKind::DepthMap => read_depth_reply(file, &mut reader),
-        Some(1) if kind == JobKind::Headers => {
+    let damaged = || "the worker's reply was damaged".to_owned();
+    let (is_done, body) = reply.split_last().ok_or_else(damaged)?;
+    if *is_done != 1 {
+        return Err(String::from_utf8_lossy(body).into_owned());
+    }
+    let mut reader = Reader::new(body);
+    let done = match kind {
+        JobKind::Photo => read_photo_reply(file, &mut reader),
+        JobKind::Thumbnail => read_pixels(&mut reader).map(Done::Thumbnail),
+        JobKind::DepthMap => read_depth_reply(file, &mut reader),
+        JobKind::Headers => {
             read_headers(std::iter::once(file).chain(companions), &mut reader).map(Done::Headers)
         }
-        Some(1) if kind == JobKind::SolverMesh => {
-            solver_mesh::read(&mut reader).map(|mesh| Done::SolverMesh(Arc::new(mesh)))
-        }
-        Some(1) => read_mesh_reply(file, companions, &mut reader),
-        _ => {
-            let message = reader.bytes().map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-            return Err(message.unwrap_or_else(|| "the worker's reply was damaged".to_owned()));
-        }
+        JobKind::SolverMesh => solver_mesh::read(&mut reader).map(|mesh| Done::SolverMesh(Arc::new(mesh))),
+        JobKind::Mesh => read_mesh_reply(file, companions, &mut reader),
     };
-    done.ok_or_else(|| "the worker's reply was damaged".to_owned())
+    done.ok_or_else(damaged)
 }
 
 fn write_photo(asset: &PhotoAsset, pixels: &Pixels) -> Vec<u8> {

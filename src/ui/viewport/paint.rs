@@ -16,6 +16,10 @@ pub fn picture(
     picture: Picture,
     place: ViewportPlace,
 ) {
+    if picture.has_fresh_mesh() {
+        // It is drawn coarsely for now, so that it is seen at once.
+        ui.ctx().request_repaint();
+    }
     let callback = PictureCallback { renderer: renderer.clone(), slot, picture, place };
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(place.rect, callback));
 }

@@ -38,7 +38,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
     let mut picture = picture_of(&subject)?;
     picture.ghosts.extend(other_fits(session));
     picture.rect = around.hands.photo_view.visible_rect();
-    picture.in_motion = around.hands.is_moving();
+    picture.in_motion = around.hands.is_moving() || picture.has_fresh_mesh();
     Some(picture)
 }
 

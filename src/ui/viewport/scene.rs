@@ -68,6 +68,6 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         other_cameras: others.collect(),
     };
     let mut picture = scene_picture_of(&subject, &free_view)?;
-    picture.in_motion = around.hands.is_moving();
+    picture.in_motion = around.hands.is_moving() || picture.has_fresh_mesh();
     Some(picture)
 }
