@@ -12,8 +12,9 @@ use crate::ui::{Surroundings, theme};
 
 pub fn draw(ui: &mut Ui, available: Rect, session: &Session, around: &Surroundings<'_>) -> ViewportPlace {
     let (place, response) = super::place(ui, available, "Viewport");
-    let picture = picture(session, around, place.pixels_per_point);
-    if let (Some(renderer), Some(picture)) = (around.renderer, &picture) {
+    let mut picture = picture(session, around, place.pixels_per_point);
+    if let (Some(renderer), Some(picture)) = (around.renderer, &mut picture) {
+        picture.in_motion |= paint::shows_new_mesh(ui, picture);
         paint::picture(ui, renderer, ViewSlot::Photo, picture.clone(), place);
     }
     wipe_grip(ui, &place, session, around);
@@ -38,7 +39,7 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
     let mut picture = picture_of(&subject)?;
     picture.ghosts.extend(other_fits(session));
     picture.rect = around.hands.photo_view.visible_rect();
-    picture.in_motion = around.hands.is_moving() || picture.has_fresh_mesh();
+    picture.in_motion = around.hands.is_moving();
     Some(picture)
 }
 

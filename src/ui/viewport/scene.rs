@@ -19,9 +19,10 @@ pub fn draw(
     asked: &mut Asked,
 ) -> ViewportPlace {
     let (place, response) = super::place(ui, available, "Scene view");
-    if let (Some(renderer), Some(picture)) =
+    if let (Some(renderer), Some(mut picture)) =
         (around.renderer, picture(session, around, place.pixels_per_point))
     {
+        picture.in_motion |= paint::shows_new_mesh(ui, &picture);
         paint::picture(ui, renderer, ViewSlot::Scene, picture, place);
     }
     gizmo::draw(ui, &place, Pane::Scene, &around.hands.scene_view, session, around);
@@ -68,6 +69,6 @@ fn picture(session: &Session, around: &Surroundings<'_>, pixels_per_point: f32) 
         other_cameras: others.collect(),
     };
     let mut picture = scene_picture_of(&subject, &free_view)?;
-    picture.in_motion = around.hands.is_moving() || picture.has_fresh_mesh();
+    picture.in_motion = around.hands.is_moving();
     Some(picture)
 }
