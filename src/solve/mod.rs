@@ -9,6 +9,7 @@ mod linear;
 mod motion;
 pub mod pins;
 pub mod snap;
+pub mod symmetry;
 #[cfg(test)]
 mod test_chance;
 mod uncertainty;
