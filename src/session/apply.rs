@@ -107,6 +107,7 @@ impl Session {
                 self.snapped_revision = Some(self.revision);
                 Ok(Vec::new())
             }
+            Command::TakeSnaps(poses) => self.take_snaps(poses, now_ms),
             Command::BeginGesture(label) => {
                 self.begin_gesture(label);
                 Ok(Vec::new())

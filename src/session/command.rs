@@ -12,7 +12,7 @@ use crate::math::{Intrinsics, Pose};
 use crate::mesh::MeshUnit;
 use crate::scene::{
     CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, Pin, PoseSource,
-    Rgb,
+    Rgb, SymmetryAxis,
 };
 
 /// One change. Only these change a session.
@@ -132,6 +132,8 @@ pub enum Command {
         object: ObjectId,
         camera_from_object: Pose,
     },
+    /// The same for several poses, as one step; those that are locked or confirmed by now stay.
+    TakeSnaps(Vec<((PhotoId, ObjectId), Pose)>),
     BeginGesture(&'static str),
     /// A pose within a gesture.
     Drag {
@@ -171,6 +173,9 @@ pub enum ObjectChange {
     MeshUnit(MeshUnit),
     /// Which of its file's axes (0 to 2) points up, for all objects of that file.
     UpAxis(usize),
+    /// For all objects of its mesh's file, with all that follows from it.
+    AddSymmetry(SymmetryAxis),
+    RemoveSymmetry(SymmetryAxis),
 }
 
 #[derive(Debug, Clone, PartialEq)]

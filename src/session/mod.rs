@@ -19,6 +19,7 @@ mod nudge;
 mod pins;
 mod pose;
 mod run;
+mod symmetry;
 mod table;
 mod view;
 

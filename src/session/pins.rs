@@ -234,6 +234,30 @@ impl Session {
         Ok(vec![Effect::Snap { photo, object, reach }])
     }
 
+    pub(super) fn ask_snap_all(&self) -> Applied {
+        Ok(vec![Effect::SnapAll(self.snappable())])
+    }
+
+    /// Posed, and neither locked nor confirmed, photo by photo.
+    pub(super) fn snappable(&self) -> Vec<Target> {
+        let scene = &self.scene;
+        let all = scene.photos.iter().flat_map(|photo| {
+            scene.objects_in(photo.id).map(|(object, annotation)| ((photo.id, object.id), annotation))
+        });
+        all.filter(|(_, annotation)| annotation.state == AnnotationState::Posed)
+            .map(|(target, _)| target)
+            .filter(|target| self.check_movable(*target).is_ok())
+            .collect()
+    }
+
+    pub(super) fn take_snaps(&mut self, mut poses: Vec<(Target, Pose)>, now_ms: f64) -> Applied {
+        poses.retain(|(target, _)| self.check_movable(*target).is_ok());
+        if poses.is_empty() {
+            return Ok(Vec::new());
+        }
+        self.change_poses("Snap on all photos", poses, PoseSource::Snap, now_ms)
+    }
+
     pub(super) fn clear_pins(&mut self) -> Applied {
         let Some((photo, object, _)) = self.selected_annotation() else { return Ok(Vec::new()) };
         self.change("Remove all pins", |scene| {

@@ -27,8 +27,9 @@ use egui::{CentralPanel, Frame, Panel};
 use crate::interact::{Hands, SceneMove};
 use crate::math::Pose;
 use crate::platform::{SceneId, SceneSummary, StorageUse};
-use crate::scene::{ObjectId, PhotoId};
+use crate::scene::{MeshAsset, ObjectId, PhotoId, SymmetryAxis};
 use crate::session::{Command, CommandId, Effect, Session};
+use crate::solve::symmetry::FoundSymmetries;
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
 pub use export_dialog::ExportRequest;
@@ -117,6 +118,8 @@ pub struct Surroundings<'a> {
     pub depth: Option<std::sync::Arc<crate::photo::DepthPixels>>,
     /// An object that is on its way to its new pose: where it is drawn.
     pub drawn_pose: Option<(PhotoId, ObjectId, Pose)>,
+    /// What the last search for symmetries found.
+    pub symmetries: SymmetryView<'a>,
     pub saving: Saving,
     /// What is being loaded.
     pub busy: Option<Busy>,
@@ -134,6 +137,12 @@ impl Surroundings<'_> {
     fn drawn_pose_in(&self, shown: PhotoId) -> Option<(ObjectId, Pose)> {
         self.drawn_pose.filter(|(photo, ..)| *photo == shown).map(|(_, object, pose)| (object, pose))
     }
+}
+
+/// What was found of a mesh's symmetries, and of which.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SymmetryView<'a> {
+    pub found: Option<(&'a std::sync::Arc<MeshAsset>, &'a FoundSymmetries)>,
 }
 
 /// What is known of the store besides its scenes.
@@ -173,6 +182,8 @@ pub struct Asked {
     pub apply_update: bool,
     pub cancel_loading: bool,
     pub export: Option<ExportRequest>,
+    /// The selected object is to be seen turned about an axis, on the screen only.
+    pub show_turn: Option<SymmetryAxis>,
 }
 
 /// Draws a whole frame.
@@ -191,7 +202,8 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
             .default_size(theme::PANEL_WIDTH)
             .size_range(panels::WIDTHS)
             .resizable(true)
-            .show(ui, |ui| panels::draw(ui, session, &mut state.panels, &mut asked.commands));
+            .show(ui, |ui| panels::draw(ui, session, around, &mut state.panels, &mut asked.commands));
+        asked.show_turn = state.panels.take_asked_turn();
     }
     if !state.panels_hidden && strip::is_shown(session) {
         Panel::bottom("photo strip").frame(theme::bar_frame(&visuals)).show(ui, |ui| {

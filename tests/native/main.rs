@@ -32,5 +32,6 @@ mod scripts;
 mod shaders;
 mod storage;
 mod support;
+mod symmetry;
 
 use support::data_folder;
