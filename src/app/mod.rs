@@ -206,8 +206,8 @@ impl eframe::App for PinPose {
         if asked.cancel_loading {
             self.cancel_work();
         }
-        if let Some(axis) = asked.show_turn {
-            self.show_turn(axis);
+        if let Some(shown) = asked.show_motion {
+            self.show_motion(shown);
         }
         if let Some(request) = asked.export {
             self.start_export(request);
@@ -253,7 +253,7 @@ impl PinPose {
             self.notify(Notice::info("Cancelled: nothing was opened"));
         } else if self.exporting.cancel() {
             self.notify(Notice::info("Cancelled: nothing more is exported"));
-        } else if !self.snapping.cancel() {
+        } else if !self.cancel_snap() {
             self.symmetries.cancel();
         }
     }

@@ -249,7 +249,8 @@ impl PinPose {
             return;
         }
         let camera_from_object = outcome.camera_from_object;
-        self.apply(Command::TakeSnap { photo, object, camera_from_object });
+        let covariance = outcome.covariance;
+        self.apply(Command::TakeSnap { photo, object, camera_from_object, covariance });
         let began_s = self.ctx.input(|input| input.time);
         self.snapping.animation =
             Some(Animation { photo, object, from: start, to: camera_from_object, began_s });

@@ -102,8 +102,9 @@ impl Session {
                 self.drag_pin((photo, object), pin, pixel, now_ms)
             }
             Command::EditPins(change) => self.edit_pins(change, now_ms),
-            Command::TakeSnap { photo, object, camera_from_object } => {
+            Command::TakeSnap { photo, object, camera_from_object, covariance } => {
                 self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
+                self.note_snap((photo, object), covariance);
                 self.snapped_revision = Some(self.revision);
                 Ok(Vec::new())
             }

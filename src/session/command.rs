@@ -14,6 +14,7 @@ use crate::scene::{
     CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, Pin, PoseSource,
     Rgb, SymmetryAxis,
 };
+use crate::solve::TwistCovariance;
 
 /// One change. Only these change a session.
 #[derive(Debug, Clone)]
@@ -131,9 +132,11 @@ pub enum Command {
         photo: PhotoId,
         object: ObjectId,
         camera_from_object: Pose,
+        /// How sure the snap is of it.
+        covariance: Option<TwistCovariance>,
     },
     /// The same for several poses, as one step; those that are locked or confirmed by now stay.
-    TakeSnaps(Vec<((PhotoId, ObjectId), Pose)>),
+    TakeSnaps(Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>),
     BeginGesture(&'static str),
     /// A pose within a gesture.
     Drag {

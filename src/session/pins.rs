@@ -14,9 +14,9 @@ use crate::math::Pose;
 use crate::scene::{
     Annotation, AnnotationState, CameraOrigin, ObjectId, PhotoId, Pin, PoseSource, file_stem,
 };
-use crate::solve::Uncertainty;
 use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
 use crate::solve::snap::SnapReach;
+use crate::solve::{TwistCovariance, Uncertainty};
 
 /// A pose's place: one object in one photo.
 type Target = (PhotoId, ObjectId);
@@ -43,6 +43,7 @@ pub struct PinReport {
     /// Other poses that fit the pins as well as theirs does.
     pub alternatives: Vec<PinPose>,
     /// Of the pose from the pins, at the focal length as it is; `None` where they leave it open.
+    pub covariance: Option<TwistCovariance>,
     pub uncertainty: Option<Uncertainty>,
     /// The present pose is the one that the pins give.
     pub is_solved: bool,
@@ -90,6 +91,7 @@ impl Session {
             rms_px: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             residuals_px,
             is_solved: solution.as_ref().is_some_and(|solution| is_same(&solution.camera_from_object, pose)),
+            covariance: solution.as_ref().and_then(|solution| solution.covariance),
             uncertainty: solution.as_ref().and_then(|solution| {
                 let center = mesh.sphere().center;
                 Some(Uncertainty::of(&solution.covariance?, &solution.camera_from_object, center))
@@ -250,12 +252,19 @@ impl Session {
             .collect()
     }
 
-    pub(super) fn take_snaps(&mut self, mut poses: Vec<(Target, Pose)>, now_ms: f64) -> Applied {
-        poses.retain(|(target, _)| self.check_movable(*target).is_ok());
-        if poses.is_empty() {
+    pub(super) fn take_snaps(
+        &mut self,
+        mut snaps: Vec<(Target, Pose, Option<TwistCovariance>)>,
+        now_ms: f64,
+    ) -> Applied {
+        snaps.retain(|(target, ..)| self.check_movable(*target).is_ok());
+        if snaps.is_empty() {
             return Ok(Vec::new());
         }
-        self.change_poses("Snap on all photos", poses, PoseSource::Snap, now_ms)
+        let poses = snaps.iter().map(|(target, pose, _)| (*target, *pose)).collect();
+        let effects = self.change_poses("Snap on all photos", poses, PoseSource::Snap, now_ms)?;
+        snaps.into_iter().for_each(|(target, _, covariance)| self.note_snap(target, covariance));
+        Ok(effects)
     }
 
     pub(super) fn clear_pins(&mut self) -> Applied {

@@ -13,6 +13,8 @@ pub mod symmetry;
 #[cfg(test)]
 mod test_chance;
 mod uncertainty;
+mod weakest;
 
 pub use motion::TwistCovariance;
-pub use uncertainty::Uncertainty;
+pub use uncertainty::{Tolerances, Uncertainty};
+pub use weakest::{Weakest, Weakness, most_helpful_point, weakest};

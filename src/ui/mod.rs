@@ -29,6 +29,7 @@ use crate::math::Pose;
 use crate::platform::{SceneId, SceneSummary, StorageUse};
 use crate::scene::{MeshAsset, ObjectId, PhotoId, SymmetryAxis};
 use crate::session::{Command, CommandId, Effect, Session};
+use crate::solve::Weakest;
 use crate::solve::symmetry::FoundSymmetries;
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
@@ -139,6 +140,15 @@ impl Surroundings<'_> {
     }
 }
 
+/// A motion of the selected object that is seen on the screen only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ShownMotion {
+    /// About an axis of symmetry.
+    Turn(SymmetryAxis),
+    /// To either side, as far as the pose is unsure.
+    Sway(Weakest),
+}
+
 /// What was found of a mesh's symmetries, and of which.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SymmetryView<'a> {
@@ -182,8 +192,7 @@ pub struct Asked {
     pub apply_update: bool,
     pub cancel_loading: bool,
     pub export: Option<ExportRequest>,
-    /// The selected object is to be seen turned about an axis, on the screen only.
-    pub show_turn: Option<SymmetryAxis>,
+    pub show_motion: Option<ShownMotion>,
 }
 
 /// Draws a whole frame.
@@ -202,8 +211,11 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
             .default_size(theme::PANEL_WIDTH)
             .size_range(panels::WIDTHS)
             .resizable(true)
-            .show(ui, |ui| panels::draw(ui, session, around, &mut state.panels, &mut asked.commands));
-        asked.show_turn = state.panels.take_asked_turn();
+            .show(ui, |ui| {
+                let UiState { preferences, panels, .. } = state;
+                panels::draw(ui, session, around, preferences, panels, &mut asked.commands);
+            });
+        asked.show_motion = state.panels.take_asked_motion();
     }
     if !state.panels_hidden && strip::is_shown(session) {
         Panel::bottom("photo strip").frame(theme::bar_frame(&visuals)).show(ui, |ui| {

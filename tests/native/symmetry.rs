@@ -151,7 +151,7 @@ fn several_snaps_are_one_step_and_leave_what_was_confirmed() {
     assert_eq!(asked, [Effect::SnapAll(vec![(photo, object)])]);
 
     let snapped = posed.translated(DVec3::Y);
-    let take = || Command::TakeSnaps(vec![((photo, object), snapped)]);
+    let take = || Command::TakeSnaps(vec![((photo, object), snapped, None)]);
     session.apply(take(), NOW_MS).unwrap();
     let pose = |session: &Session| session.selected_annotation().unwrap().2.camera_from_object;
     assert_eq!(pose(&session), snapped);
@@ -180,8 +180,8 @@ fn panel(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>, Rc<RefCel
         asked.commands.into_iter().for_each(|command| {
             shared.borrow_mut().apply(command, NOW_MS).unwrap();
         });
-        if asked.show_turn.is_some() {
-            *turn.borrow_mut() = asked.show_turn;
+        if let Some(ui::ShownMotion::Turn(axis)) = asked.show_motion {
+            *turn.borrow_mut() = Some(axis);
         }
     });
     (harness, session, asked_turn)
@@ -218,7 +218,7 @@ fn the_panel_shows_what_was_found_and_takes_what_is_accepted() {
 fn an_axis_is_written_by_hand() {
     let (mut harness, session, asked_turn) = panel(small_session());
     click(&mut harness, "Symmetry");
-    click(&mut harness, "Add symmetry axis");
+    click(&mut harness, "Add axis…");
     click(&mut harness, "Axis along y");
     click(&mut harness, "Any turn");
     click(&mut harness, "Try it");

@@ -12,7 +12,7 @@ use crate::solve::snap::{SnapOutcome, SnapReach, SnapVerdict};
 pub struct Batch {
     waiting: VecDeque<(PhotoId, ObjectId)>,
     total: usize,
-    moved: Vec<(Asked, Pose)>,
+    moved: Vec<(Asked, SnapOutcome)>,
     /// Which stay as they are.
     refused: usize,
     /// Of those that moved, the one that fits its photo least.
@@ -31,8 +31,8 @@ impl Batch {
 
     /// Where an object of a photo is now: another one's new pose may be before it.
     pub fn moved_to(&self, photo: PhotoId, object: ObjectId) -> Option<Pose> {
-        let is_it = |(asked, _): &&(Asked, Pose)| (asked.photo, asked.object) == (photo, object);
-        self.moved.iter().find(is_it).map(|(_, pose)| *pose)
+        let is_it = |(asked, _): &&(Asked, SnapOutcome)| (asked.photo, asked.object) == (photo, object);
+        self.moved.iter().find(is_it).map(|(_, outcome)| outcome.camera_from_object)
     }
 
     /// One that could not be tried.
@@ -45,7 +45,7 @@ impl Batch {
             self.refused += 1;
             return;
         }
-        self.moved.push((asked, outcome.camera_from_object));
+        self.moved.push((asked, *outcome));
         if self.worst.is_none_or(|(score, _)| outcome.score_after < score) {
             self.worst = Some((outcome.score_after, asked));
         }
@@ -79,16 +79,30 @@ impl PinPose {
         }
     }
 
+    /// Stops what is under way; what is done of a batch stays. False if there is nothing to stop.
+    pub(in crate::app) fn cancel_snap(&mut self) -> bool {
+        let batch = self.snapping.batch.take();
+        let was_busy = self.snapping.cancel() || batch.is_some();
+        if let Some(batch) = batch {
+            self.end_batch(batch);
+        }
+        was_busy
+    }
+
     fn end_batch(&mut self, batch: Batch) {
         // Where somebody has gone on by hand in the meantime, that stays.
         let scene = self.session.scene();
-        let is_as_it_was = |(asked, _): &(Asked, Pose)| {
+        let is_as_it_was = |(asked, _): &(Asked, SnapOutcome)| {
             let present = scene.annotation(asked.photo, asked.object);
             present.is_some_and(|annotation| annotation.camera_from_object == asked.start)
         };
-        let (moved, gone_on): (Vec<_>, Vec<_>) = batch.moved.into_iter().partition(is_as_it_was);
-        let poses: Vec<_> = moved.iter().map(|(asked, pose)| ((asked.photo, asked.object), *pose)).collect();
-        let stayed = batch.refused + gone_on.len();
+        let moved = batch.moved.into_iter().filter(is_as_it_was);
+        let poses: Vec<_> = moved
+            .map(|(asked, outcome)| {
+                ((asked.photo, asked.object), outcome.camera_from_object, outcome.covariance)
+            })
+            .collect();
+        let stayed = batch.total - poses.len();
         let mut text = format!("Snapped {} of {} poses", poses.len(), batch.total);
         if stayed > 0 {
             text += &format!(", {stayed} stay as they are");

@@ -18,11 +18,12 @@ mod pose_numbers;
 mod references;
 mod scene_view;
 mod section;
+mod sureness;
 mod symmetry;
 
 use egui::{Frame, Panel, Ui, UiBuilder};
 
-use super::Surroundings;
+use super::{Preferences, ShownMotion, Surroundings};
 use crate::scene::{ObjectId, PhotoId, SymmetryAxis};
 use crate::session::{Command, Session};
 
@@ -44,6 +45,7 @@ pub struct PanelState {
     pose: pose_fields::PoseForm,
     mesh: mesh_frame::MeshForm,
     symmetry: symmetry::SymmetryForm,
+    sureness: sureness::SurenessForm,
     rename: Option<list::Rename>,
     /// As of the last frame: another one comes into sight in its list.
     shown_photo: Option<PhotoId>,
@@ -69,9 +71,10 @@ impl PanelState {
         self.symmetry.lit()
     }
 
-    /// The turn about an axis that the user wants to see.
-    pub fn take_asked_turn(&mut self) -> Option<SymmetryAxis> {
-        self.symmetry.take_asked_turn()
+    /// The motion of the selected object that the user wants to see.
+    pub fn take_asked_motion(&mut self) -> Option<ShownMotion> {
+        let turn = self.symmetry.take_asked_turn().map(ShownMotion::Turn);
+        turn.or_else(|| self.sureness.take_asked_sway().map(ShownMotion::Sway))
     }
 }
 
@@ -79,6 +82,7 @@ pub fn draw(
     ui: &mut Ui,
     session: &Session,
     around: &Surroundings<'_>,
+    preferences: &mut Preferences,
     state: &mut PanelState,
     commands: &mut Vec<Command>,
 ) {
@@ -86,7 +90,7 @@ pub fn draw(
     let rect = ui.available_rect_before_wrap();
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
     inside.set_clip_rect(rect.intersect(ui.clip_rect()));
-    parts(&mut inside, session, around, state, commands);
+    parts(&mut inside, session, around, preferences, state, commands);
     ui.advance_cursor_after_rect(rect);
 }
 
@@ -94,6 +98,7 @@ fn parts(
     ui: &mut Ui,
     session: &Session,
     around: &Surroundings<'_>,
+    preferences: &mut Preferences,
     state: &mut PanelState,
     commands: &mut Vec<Command>,
 ) {
@@ -108,7 +113,7 @@ fn parts(
     };
     panel.frame(frame).show(ui, |ui| output::draw(ui, session, &mut state.output, commands));
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        control_and_display(ui, session, around, state, commands);
+        control_and_display(ui, session, around, preferences, state, commands);
     });
 }
 
@@ -116,6 +121,7 @@ fn control_and_display(
     ui: &mut Ui,
     session: &Session,
     around: &Surroundings<'_>,
+    preferences: &mut Preferences,
     state: &mut PanelState,
     commands: &mut Vec<Command>,
 ) {
@@ -125,6 +131,7 @@ fn control_and_display(
     section::caption(ui, "Control");
     camera::draw(ui, session, &mut state.camera, commands);
     pins::draw(ui, session, commands);
+    sureness::draw(ui, session, &mut preferences.tolerances, &mut state.sureness);
     pose_fields::draw(ui, session, &mut state.pose, commands);
     mesh_frame::draw(ui, session, &mut state.mesh, commands);
     symmetry::draw(ui, session, around.symmetries, &mut state.symmetry, commands);

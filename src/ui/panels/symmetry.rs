@@ -47,29 +47,37 @@ pub fn draw(
 ) {
     form.lit = None;
     let Some(object) = session.selected().and_then(|id| session.scene().object(id)) else { return };
-    let mut is_plus_clicked = false;
-    let plus = |ui: &mut Ui| {
-        let tooltip = "Write an axis by hand";
-        is_plus_clicked = icon_button(ui, Icon::Plus, "Add symmetry axis", tooltip, !object.locked).clicked();
-    };
-    section(ui, "Symmetry", false, plus, |ui| {
+    let body = |ui: &mut Ui| {
         ui.add_enabled_ui(!object.locked, |ui| {
             present(ui, object, form, commands);
             found(ui, object, search, form, commands);
             new_axis(ui, object, form, commands);
         });
+        if form.new.is_none_or(|(id, _)| id != object.id) {
+            actions(ui, session, object, form, commands);
+        }
+    };
+    section(ui, "Symmetry", false, |_| {}, body);
+}
+
+fn actions(
+    ui: &mut Ui,
+    session: &Session,
+    object: &Object,
+    form: &mut SymmetryForm,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal_wrapped(|ui| {
         let button = egui::Button::new("Find symmetries");
-        if form.new.is_none() && command_button(ui, button, CommandId::FindSymmetries.info(), session) {
+        if command_button(ui, button, CommandId::FindSymmetries.info(), session) {
             commands.push(Command::Run(CommandId::FindSymmetries));
         }
+        let button = ui.add_enabled(!object.locked, egui::Button::new("Add axis…"));
+        if button.on_hover_text("Write an axis by hand").clicked() {
+            let through_mm = object.mesh.mesh.bounds().center();
+            form.new = Some((object.id, SymmetryAxis { axis: DVec3::Z, through_mm, fold: Fold::Times(2) }));
+        }
     });
-    if is_plus_clicked {
-        let through_mm = object.mesh.mesh.bounds().center();
-        form.new = match form.new {
-            Some((id, _)) if id == object.id => None,
-            _ => Some((object.id, SymmetryAxis { axis: DVec3::Z, through_mm, fold: Fold::Times(2) })),
-        };
-    }
 }
 
 /// The axes that the object has.
