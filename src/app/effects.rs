@@ -19,6 +19,8 @@ impl PinPose {
             }
             Effect::ExportPicture(request) => self.export(request),
             Effect::Snap { photo, object, reach } => self.start_snap(photo, object, reach),
+            Effect::SnapAll(targets) => self.start_batch(targets),
+            Effect::FindSymmetries(object) => self.find_symmetries(object),
             Effect::CopyText(text) => self.ctx.copy_text(text),
             Effect::NewScene => self.new_scene(),
             Effect::ShowScenes => self.show_scenes(),

@@ -20,6 +20,7 @@ use crate::photo::{DepthPixels, Pixels, is_depth_like};
 use crate::platform::{self, FileBytes, PageReply, Saved, SavedAsset};
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
 use crate::session::{Batch, Pick};
+use crate::solve::symmetry::FoundSymmetries;
 use crate::ui::Busy;
 
 /// What takes less is over before it could be read.
@@ -48,6 +49,8 @@ pub struct Loading {
     finished_depths: Vec<(Sha256, Option<Arc<DepthPixels>>)>,
     solver_mesh_jobs: HashMap<u64, Sha256>,
     finished_solver_meshes: Vec<(Sha256, Option<Arc<Mesh>>)>,
+    symmetry_jobs: HashMap<u64, Arc<MeshAsset>>,
+    finished_symmetries: Vec<(Arc<MeshAsset>, Option<FoundSymmetries>)>,
     /// Zips that are no workspaces.
     archives: Vec<FoundArchive>,
 }
@@ -132,6 +135,8 @@ impl Loading {
             finished_depths: Vec::new(),
             solver_mesh_jobs: HashMap::new(),
             finished_solver_meshes: Vec::new(),
+            symmetry_jobs: HashMap::new(),
+            finished_symmetries: Vec::new(),
             archives: Vec::new(),
         }
     }
@@ -433,7 +438,7 @@ impl Load {
             Ok(Done::DepthMap(asset, _)) if self.opening.is_some() => self.batch.photos.push(asset),
             Ok(Done::DepthMap(asset, _)) => self.likely_depths.push(asset),
             // These are of no load.
-            Ok(Done::Thumbnail(_) | Done::Headers(_) | Done::SolverMesh(_)) => return,
+            Ok(Done::Thumbnail(_) | Done::Headers(_) | Done::SolverMesh(_) | Done::Symmetries(_)) => return,
             Ok(Done::Mesh(asset, warnings)) => {
                 self.warnings.extend(warnings.into_iter().map(|warning| format!("{}: {warning}", file.name)));
                 self.batch.meshes.push(asset);

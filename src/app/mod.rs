@@ -14,11 +14,13 @@ mod input;
 mod jobs;
 mod loading;
 mod mask_layer;
+mod motion;
 mod performance;
 mod photo_cache;
 mod pictures;
 mod scenes;
 mod snapping;
+mod symmetry;
 mod thumbnails;
 mod widgets;
 
@@ -53,6 +55,8 @@ pub struct PinPose {
     depth_maps: depth_maps::DepthMaps,
     exporting: exporting::Exporting,
     snapping: snapping::Snapping,
+    symmetries: symmetry::SymmetrySearch,
+    motion: Option<motion::Motion>,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
@@ -101,6 +105,8 @@ impl PinPose {
             depth_maps: depth_maps::DepthMaps::default(),
             exporting: exporting::Exporting::default(),
             snapping: snapping::Snapping::default(),
+            symmetries: symmetry::SymmetrySearch::default(),
+            motion: None,
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
@@ -153,6 +159,8 @@ impl eframe::App for PinPose {
         self.make_pictures(ctx);
         self.tick_export();
         self.tick_snap();
+        self.tick_symmetries();
+        self.tick_motion();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
@@ -164,6 +172,7 @@ impl eframe::App for PinPose {
         let opening = || ui::Busy { text: "Opening…".to_owned(), can_cancel: false };
         let busy = self.loading.busy(platform::now_ms()).or_else(|| self.datasets.busy());
         let busy = busy.or_else(|| self.exporting.busy()).or_else(|| self.snapping.busy());
+        let busy = busy.or_else(|| self.symmetries.busy());
         let busy = busy.or_else(|| self.scenes.is_opening().then(opening));
         let around = ui::Surroundings {
             hands: &self.hands,
@@ -171,7 +180,8 @@ impl eframe::App for PinPose {
             pixels,
             masks: self.mask_layer.pixels(),
             depth,
-            drawn_pose: self.snapping.drawn_pose(ui.ctx().input(|input| input.time)),
+            drawn_pose: self.drawn_pose(ui.ctx().input(|input| input.time)),
+            symmetries: self.symmetries.view(),
             saving: self.autosave.state(&self.session),
             busy,
             scenes: self.scenes.list(),
@@ -195,6 +205,9 @@ impl eframe::App for PinPose {
         }
         if asked.cancel_loading {
             self.cancel_work();
+        }
+        if let Some(shown) = asked.show_motion {
+            self.show_motion(shown);
         }
         if let Some(request) = asked.export {
             self.start_export(request);
@@ -240,8 +253,8 @@ impl PinPose {
             self.notify(Notice::info("Cancelled: nothing was opened"));
         } else if self.exporting.cancel() {
             self.notify(Notice::info("Cancelled: nothing more is exported"));
-        } else {
-            self.snapping.cancel();
+        } else if !self.cancel_snap() {
+            self.symmetries.cancel();
         }
     }
 }

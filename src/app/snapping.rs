@@ -1,5 +1,7 @@
 //! Snap: the selected object's pose refined to the photo, a slice a frame.
 
+mod batch;
+
 use std::sync::Arc;
 
 use glam::DAffine3;
@@ -7,12 +9,15 @@ use glam::DAffine3;
 use super::PinPose;
 use crate::math::Pose;
 use crate::mesh::Mesh;
+use crate::photo::Pixels;
 use crate::platform;
-use crate::scene::{ObjectId, PhotoId, Sha256};
+use crate::raster::Mask;
+use crate::scene::{DepthInMm, ObjectId, PhotoAsset, PhotoId, Sha256};
 use crate::session::{Command, Notice};
 use crate::solve::contour::ContourModel;
 use crate::solve::snap::{Progress, Snap, SnapHints, SnapOptions, SnapOutcome, SnapReach, SnapVerdict};
 use crate::ui::Busy;
+use batch::Batch;
 
 /// Of each frame, for the solver.
 const SLICE_MS: f64 = 8.0;
@@ -28,6 +33,10 @@ pub struct Snapping {
     /// Waits for meshes and pixels.
     asked: Option<Asked>,
     running: Option<(Asked, Box<Snap>, f64)>,
+    /// What goes on once this one is done.
+    batch: Option<Batch>,
+    /// A photo or mask that was sent for.
+    wanted_picture: Option<Sha256>,
     animation: Option<Animation>,
 }
 
@@ -52,10 +61,13 @@ struct Animation {
 
 impl Snapping {
     pub fn is_busy(&self) -> bool {
-        self.asked.is_some() || self.running.is_some()
+        self.asked.is_some() || self.running.is_some() || self.batch.is_some()
     }
 
     pub fn busy(&self) -> Option<Busy> {
+        if let Some(batch) = &self.batch {
+            return Some(Busy { text: batch.text(), can_cancel: true });
+        }
         let text = match (&self.asked, &self.running) {
             (Some(_), _) => "Preparing to snap…".to_owned(),
             (None, Some((_, _, part))) => format!("Snapping… {:.0} %", part * 100.0),
@@ -66,7 +78,8 @@ impl Snapping {
 
     /// Stops what is under way; false if nothing is.
     pub fn cancel(&mut self) -> bool {
-        self.asked.take().is_some() | self.running.take().is_some()
+        self.wanted_picture = None;
+        self.asked.take().is_some() | self.running.take().is_some() | self.batch.take().is_some()
     }
 
     /// Where an object is drawn while it is on its way to its new pose.
@@ -93,6 +106,9 @@ impl PinPose {
             self.snapping.wanted.retain(|wanted| *wanted != sha256);
             self.snapping.meshes.push((sha256, mesh));
         }
+        if self.snapping.asked.is_none() && self.snapping.running.is_none() {
+            self.go_on_with_batch();
+        }
         if let Some(asked) = self.snapping.asked {
             self.prepare_snap(asked);
         }
@@ -114,7 +130,7 @@ impl PinPose {
         }
     }
 
-    /// Begins once photo and meshes are there.
+    /// Begins once photo, mask, depth map and meshes are there.
     fn prepare_snap(&mut self, asked: Asked) {
         let scene = self.session.scene();
         let photo =
@@ -123,29 +139,75 @@ impl PinPose {
             self.snapping.asked = None;
             return;
         };
-        let (camera, pixels) = (photo.camera, self.photos.get(photo.asset.sha256));
-        let here: Vec<(ObjectId, Pose)> = (self.session.scene().objects_in(asked.photo))
+        let (camera, asset) = (photo.camera, photo.asset.clone());
+        let masks = scene.masks_of(asked.photo);
+        let mask =
+            masks.filter(|mask| mask.object == Some(asked.object)).map(|mask| mask.asset.clone()).next();
+        let here: Vec<(ObjectId, Pose)> = (scene.objects_in(asked.photo))
             .map(|(object, annotation)| (object.id, annotation.camera_from_object))
             .collect();
         // All that are missing are sent for at once. Until they are there this comes round every frame, so nothing is built.
         let missing = here.iter().filter(|(object, _)| !self.has_solver_mesh(*object)).count();
-        let (Some(pixels), 0) = (pixels, missing) else { return };
-        self.snapping.asked = None;
-        let model_of = |(object, pose)| Some((object, pose, self.contour_model(object)?));
+        let Some(pixels) = self.picture_for_snap(&asset) else { return };
+        let mask = match mask.map(|mask| self.picture_for_snap(&mask)) {
+            Some(None) => return,
+            Some(Some(mask)) => mask.map(|mask| Mask::of_picture(&mask)),
+            None => None,
+        };
+        if missing > 0 || self.waits_for_depth(asked.photo) {
+            return;
+        }
+        (self.snapping.asked, self.snapping.wanted_picture) = (None, None);
+        let Some(pixels) = pixels else { return self.leave_out("The photo cannot be decoded") };
+        let batch = &self.snapping.batch;
+        let moved = |object| batch.as_ref().and_then(|batch| batch.moved_to(asked.photo, object));
+        let model_of =
+            |(object, pose)| Some((object, moved(object).unwrap_or(pose), self.contour_model(object)?));
         let mut models: Vec<_> = here.into_iter().filter_map(model_of).collect();
         let Some(position) = models.iter().position(|(object, ..)| *object == asked.object) else {
-            self.notify(Notice::error("This mesh has no surface to snap to the photo"));
-            return;
+            return self.leave_out("This mesh has no surface to snap to the photo");
         };
         let (_, _, model) = models.remove(position);
         let annotation = self.session.scene().annotation(asked.photo, asked.object);
         let hints = SnapHints {
             pins: annotation.map_or_else(Vec::new, |annotation| annotation.pins.clone()),
             occluders: models.into_iter().map(|(_, pose, model)| (model, pose)).collect(),
+            depth: self.depth_for_snap(asked.photo),
         };
-        let options = SnapOptions { reach: asked.reach, ..SnapOptions::default() };
+        let options = SnapOptions { reach: asked.reach, mask };
         let snap = Snap::with(&pixels, &camera, model, &asked.start, hints, &options);
         self.snapping.running = Some((asked, Box::new(snap), 0.0));
+    }
+
+    /// A photo's or a mask's pixels; `None` while they are on their way, `Some(None)` where they do not come.
+    fn picture_for_snap(&mut self, asset: &PhotoAsset) -> Option<Option<Arc<Pixels>>> {
+        let known = self.photos.get(asset.sha256);
+        if known.is_some() {
+            return Some(known);
+        }
+        if self.snapping.wanted_picture != Some(asset.sha256) {
+            self.snapping.wanted_picture = Some(asset.sha256);
+            self.loading.decode(asset);
+            return None;
+        }
+        // What has come was taken before this is asked.
+        self.loading.is_worker_idle().then_some(None)
+    }
+
+    /// The photo's depth map, where it hides what is behind it.
+    fn depth_for_snap(&mut self, photo: PhotoId) -> Option<Arc<DepthInMm>> {
+        let pixels = self.depth_of(photo)?;
+        let mm_per_unit = self.session.scene().photo(photo)?.depth.as_ref()?.mm_per_unit;
+        let mm = pixels.raw.iter().map(|&raw| (f64::from(raw) * mm_per_unit) as f32).collect();
+        Some(Arc::new(DepthInMm { width: pixels.width, height: pixels.height, mm }))
+    }
+
+    /// A pose that cannot be snapped: in a batch it is counted, else it is said why.
+    fn leave_out(&mut self, why: &str) {
+        match &mut self.snapping.batch {
+            Some(batch) => batch.leave(),
+            None => self.notify(Notice::error(why)),
+        }
     }
 
     /// Is what the solvers look at there, or known not to come? If not, it is sent for.
@@ -172,6 +234,10 @@ impl PinPose {
     }
 
     fn finish_snap(&mut self, asked: Asked, outcome: &SnapOutcome) {
+        if let Some(batch) = &mut self.snapping.batch {
+            batch.take(asked, outcome);
+            return;
+        }
         let Asked { photo, object, start, .. } = asked;
         let present = self.session.scene().annotation(photo, object);
         // Somebody has gone on by hand.
@@ -183,7 +249,8 @@ impl PinPose {
             return;
         }
         let camera_from_object = outcome.camera_from_object;
-        self.apply(Command::TakeSnap { photo, object, camera_from_object });
+        let covariance = outcome.covariance;
+        self.apply(Command::TakeSnap { photo, object, camera_from_object, covariance });
         let began_s = self.ctx.input(|input| input.time);
         self.snapping.animation =
             Some(Animation { photo, object, from: start, to: camera_from_object, began_s });

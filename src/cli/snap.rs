@@ -10,10 +10,11 @@ use crate::formats::{Keep, write_document};
 use crate::mesh::MeshUnit;
 use crate::photo::{Pixels, decode};
 use crate::platform;
-use crate::scene::{Annotation, AnnotationState, Object, ObjectId, Photo, PoseSource, Scene};
+use crate::raster::Mask;
+use crate::scene::{Annotation, AnnotationState, DepthInMm, Object, ObjectId, Photo, PoseSource, Scene};
 use crate::session::{Command, Session};
 use crate::solve::contour::ContourModel;
-use crate::solve::snap::{Snap, SnapHints, SnapOutcome, SnapVerdict};
+use crate::solve::snap::{Snap, SnapHints, SnapOptions, SnapOutcome, SnapVerdict};
 
 struct Options {
     paths: Vec<PathBuf>,
@@ -43,11 +44,12 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
         let pixels = decode(&photo.asset.bytes)
             .map_err(|error| Failure::Input(vec![format!("{}: {error}", photo.asset.file_name)]))?
             .pixels;
+        let seen = Seen { photo, pixels, depth: depth_of(photo)? };
         for (object, annotation) in scene.objects_in(photo.id) {
             if annotation.state == AnnotationState::Untouched {
                 continue;
             }
-            let outcome = snap(&scene, photo, &pixels, object, annotation, &models);
+            let outcome = snap(&scene, &seen, object, annotation, &models)?;
             if let Some(outcome) = &outcome {
                 take(&mut session, photo, object, outcome)?;
             }
@@ -70,24 +72,54 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
     Ok(())
 }
 
+/// A photo, decoded.
+struct Seen<'a> {
+    photo: &'a Photo,
+    pixels: Pixels,
+    depth: Option<Arc<DepthInMm>>,
+}
+
+/// The photo's depth map, where it hides what is behind it.
+fn depth_of(photo: &Photo) -> Result<Option<Arc<DepthInMm>>, Failure> {
+    let depth = photo.depth.as_ref().filter(|depth| depth.occludes);
+    let read = depth.map(|depth| {
+        let named = |error| Failure::Input(vec![format!("{}: {error}", depth.asset.file_name)]);
+        depth.in_mm().map(Arc::new).map_err(named)
+    });
+    read.transpose()
+}
+
+/// The mask that somebody has drawn of an object in a photo.
+fn mask_of(scene: &Scene, photo: &Photo, object: ObjectId) -> Result<Option<Mask>, Failure> {
+    let mask = scene.masks_of(photo.id).find(|mask| mask.object == Some(object));
+    let read = mask.map(|mask| {
+        let named = |error| Failure::Input(vec![format!("{}: {error}", mask.asset.file_name)]);
+        decode(&mask.asset.bytes).map(|picture| Mask::of_picture(&picture.pixels)).map_err(named)
+    });
+    read.transpose()
+}
+
 /// `None` for a mesh without a surface.
 fn snap(
     scene: &Scene,
-    photo: &Photo,
-    pixels: &Pixels,
+    seen: &Seen<'_>,
     object: &Object,
     annotation: &Annotation,
     models: &[(ObjectId, Option<Arc<ContourModel>>)],
-) -> Option<SnapOutcome> {
+) -> Result<Option<SnapOutcome>, Failure> {
+    let Seen { photo, pixels, depth } = seen;
     let model_of =
         |id: ObjectId| models.iter().find(|(known, _)| *known == id).and_then(|(_, model)| model.clone());
     let others = scene.objects_in(photo.id).filter(|(other, _)| other.id != object.id);
     let occluders = others
         .filter(|(_, annotation)| annotation.state != AnnotationState::Untouched)
         .filter_map(|(other, annotation)| Some((model_of(other.id)?, annotation.camera_from_object)));
-    let hints = SnapHints { pins: annotation.pins.clone(), occluders: occluders.collect() };
-    let model = model_of(object.id)?;
-    Some(Snap::new(pixels, &photo.camera, model, &annotation.camera_from_object, hints).run())
+    let hints =
+        SnapHints { pins: annotation.pins.clone(), occluders: occluders.collect(), depth: depth.clone() };
+    let options = SnapOptions { mask: mask_of(scene, photo, object.id)?, ..SnapOptions::default() };
+    let start = &annotation.camera_from_object;
+    let snap = |model| Snap::with(pixels, &photo.camera, model, start, hints, &options).run();
+    Ok(model_of(object.id).map(snap))
 }
 
 fn take(session: &mut Session, photo: &Photo, object: &Object, outcome: &SnapOutcome) -> Outcome {

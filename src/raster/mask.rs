@@ -1,6 +1,7 @@
 //! A picture of one bit per pixel.
 
 use super::PixelRegion;
+use crate::photo::Pixels;
 
 /// A bitmap, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,6 +21,12 @@ impl Mask {
             words[pixel / 64] |= u64::from(is_set) << (pixel % 64);
         }
         Self { width, height, words }
+    }
+
+    /// A mask that was drawn as a picture: what is neither black nor transparent is in it.
+    pub fn of_picture(picture: &Pixels) -> Self {
+        let is_set = |pixel: &[u8]| pixel[3] > 0 && pixel[..3] != [0, 0, 0];
+        Self::from_pixels(picture.width, picture.height, picture.rgba.chunks_exact(4).map(is_set))
     }
 
     pub fn width(&self) -> u32 {

@@ -29,7 +29,7 @@ pub use mask::{Mask, MaskId};
 pub use mesh_frame::{MeshFrame, MeshFrameError};
 pub use pin::Pin;
 pub use placement::untouched_pose;
-pub use symmetry::{ContinuousSymmetry, Symmetries};
+pub use symmetry::{ContinuousSymmetry, Fold, Symmetries, SymmetryAxis, SymmetryError};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PhotoId(pub u32);

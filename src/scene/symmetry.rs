@@ -1,8 +1,12 @@
 //! Transforms of an object onto itself, as BOP's `models_info.json` has them.
 
+mod axis;
+
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
 use crate::math::Pose;
+
+pub use axis::{Fold, SymmetryAxis, SymmetryError};
 
 /// The step, in radians of half a turn, in which a continuous symmetry is sampled: 315 rotations of a turn. Source:
 /// bop_toolkit's `max_sym_disc_step`.

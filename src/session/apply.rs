@@ -102,11 +102,13 @@ impl Session {
                 self.drag_pin((photo, object), pin, pixel, now_ms)
             }
             Command::EditPins(change) => self.edit_pins(change, now_ms),
-            Command::TakeSnap { photo, object, camera_from_object } => {
+            Command::TakeSnap { photo, object, camera_from_object, covariance } => {
                 self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
+                self.note_snap((photo, object), covariance);
                 self.snapped_revision = Some(self.revision);
                 Ok(Vec::new())
             }
+            Command::TakeSnaps(poses) => self.take_snaps(poses, now_ms),
             Command::BeginGesture(label) => {
                 self.begin_gesture(label);
                 Ok(Vec::new())

@@ -36,6 +36,10 @@ pub fn needs_selected_pose(session: &Session) -> Reason {
     session.selected_annotation().is_none().then_some("no object of this photo is selected")
 }
 
+pub fn needs_snappable(session: &Session) -> Reason {
+    session.snappable().is_empty().then_some("no pose is there that is neither locked nor confirmed")
+}
+
 pub fn needs_pins(session: &Session) -> Reason {
     let has_pins =
         session.selected_annotation().is_some_and(|(_, _, annotation)| !annotation.pins.is_empty());

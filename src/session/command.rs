@@ -12,8 +12,9 @@ use crate::math::{Intrinsics, Pose};
 use crate::mesh::MeshUnit;
 use crate::scene::{
     CameraOrigin, Look, MaskId, MeshFrame, MeshFrameError, ObjectId, PhotoAsset, PhotoId, Pin, PoseSource,
-    Rgb,
+    Rgb, SymmetryAxis,
 };
+use crate::solve::TwistCovariance;
 
 /// One change. Only these change a session.
 #[derive(Debug, Clone)]
@@ -131,7 +132,11 @@ pub enum Command {
         photo: PhotoId,
         object: ObjectId,
         camera_from_object: Pose,
+        /// How sure the snap is of it.
+        covariance: Option<TwistCovariance>,
     },
+    /// The same for several poses, as one step; those that are locked or confirmed by now stay.
+    TakeSnaps(Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>),
     BeginGesture(&'static str),
     /// A pose within a gesture.
     Drag {
@@ -171,6 +176,9 @@ pub enum ObjectChange {
     MeshUnit(MeshUnit),
     /// Which of its file's axes (0 to 2) points up, for all objects of that file.
     UpAxis(usize),
+    /// For all objects of its mesh's file, with all that follows from it.
+    AddSymmetry(SymmetryAxis),
+    RemoveSymmetry(SymmetryAxis),
 }
 
 #[derive(Debug, Clone, PartialEq)]

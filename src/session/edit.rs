@@ -52,6 +52,8 @@ impl Session {
             ObjectChange::MeshFrame(frame) => return self.set_mesh_frame(id, *frame),
             ObjectChange::MeshUnit(unit) => return self.set_mesh_unit(id, *unit),
             ObjectChange::UpAxis(axis) => return self.set_up_axis(id, *axis),
+            ObjectChange::AddSymmetry(axis) => return self.add_symmetry(id, axis),
+            ObjectChange::RemoveSymmetry(axis) => return self.remove_symmetry(id, axis),
             ObjectChange::Name(_) => ("Rename object", false),
             ObjectChange::Color(_) => ("Object colour", false),
             ObjectChange::Opacity(_) => ("Object opacity", true),
@@ -179,6 +181,10 @@ fn change_object(object: &mut Object, change: &ObjectChange) {
         ObjectChange::Opacity(opacity) => object.opacity = opacity.clamp(0.0, 1.0),
         ObjectChange::Visible(visible) => object.visible = *visible,
         ObjectChange::Locked(locked) => object.locked = *locked,
-        ObjectChange::MeshFrame(_) | ObjectChange::MeshUnit(_) | ObjectChange::UpAxis(_) => {}
+        ObjectChange::MeshFrame(_)
+        | ObjectChange::MeshUnit(_)
+        | ObjectChange::UpAxis(_)
+        | ObjectChange::AddSymmetry(_)
+        | ObjectChange::RemoveSymmetry(_) => {}
     }
 }

@@ -25,6 +25,10 @@ pub enum Effect {
         object: ObjectId,
         reach: SnapReach,
     },
+    /// Refine these poses to their photos.
+    SnapAll(Vec<(PhotoId, ObjectId)>),
+    /// Look for the symmetries of an object's mesh.
+    FindSymmetries(ObjectId),
     /// The clipboard can be read in answer to a key alone; else the user is given a field to paste into.
     AskForPose,
     AskForExport,

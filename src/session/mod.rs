@@ -19,10 +19,12 @@ mod nudge;
 mod pins;
 mod pose;
 mod run;
+mod sureness;
+mod symmetry;
 mod table;
 mod view;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub use command::{Command, CommandError, MaskChange, ObjectChange, PhotoChange, PinChange};
 pub use dataset::DatasetImport;
@@ -34,11 +36,14 @@ pub use log::LogEntry;
 pub use mesh_frames::UnitQuestion;
 pub use nudge::{Nudge, NudgeFrame, NudgeSettings};
 pub use pins::{HalfPin, PinReport};
+pub use sureness::{HelpfulPin, Sureness};
 pub use table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
 pub use view::{Arrangement, Panes, Tool};
 
 use crate::formats::{Document, Incoming, Keep, PosesAs, ViewSettings};
+use crate::math::Pose;
 use crate::scene::{Annotation, Look, ObjectId, Photo, PhotoId, Scene};
+use crate::solve::TwistCovariance;
 use history::{Burst, BurstKey, History, Snapshot};
 
 /// Everything that is open.
@@ -57,6 +62,8 @@ pub struct Session {
     /// After a snap, until anything else changes.
     snapped_revision: Option<u64>,
     pin_report: pins::ReportCache,
+    /// Of poses that a snap has set, with the pose that it is of.
+    snap_covariances: BTreeMap<(PhotoId, ObjectId), (Pose, TwistCovariance)>,
     history: History,
     log: log::Log,
     gesture: Option<Gesture>,

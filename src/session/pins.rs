@@ -14,9 +14,9 @@ use crate::math::Pose;
 use crate::scene::{
     Annotation, AnnotationState, CameraOrigin, ObjectId, PhotoId, Pin, PoseSource, file_stem,
 };
-use crate::solve::Uncertainty;
 use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
 use crate::solve::snap::SnapReach;
+use crate::solve::{TwistCovariance, Uncertainty};
 
 /// A pose's place: one object in one photo.
 type Target = (PhotoId, ObjectId);
@@ -43,6 +43,7 @@ pub struct PinReport {
     /// Other poses that fit the pins as well as theirs does.
     pub alternatives: Vec<PinPose>,
     /// Of the pose from the pins, at the focal length as it is; `None` where they leave it open.
+    pub covariance: Option<TwistCovariance>,
     pub uncertainty: Option<Uncertainty>,
     /// The present pose is the one that the pins give.
     pub is_solved: bool,
@@ -90,6 +91,7 @@ impl Session {
             rms_px: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             residuals_px,
             is_solved: solution.as_ref().is_some_and(|solution| is_same(&solution.camera_from_object, pose)),
+            covariance: solution.as_ref().and_then(|solution| solution.covariance),
             uncertainty: solution.as_ref().and_then(|solution| {
                 let center = mesh.sphere().center;
                 Some(Uncertainty::of(&solution.covariance?, &solution.camera_from_object, center))
@@ -232,6 +234,37 @@ impl Session {
         let Some((photo, object, _)) = self.selected_annotation() else { return Ok(Vec::new()) };
         self.check_movable((photo, object))?;
         Ok(vec![Effect::Snap { photo, object, reach }])
+    }
+
+    pub(super) fn ask_snap_all(&self) -> Applied {
+        Ok(vec![Effect::SnapAll(self.snappable())])
+    }
+
+    /// Posed, and neither locked nor confirmed, photo by photo.
+    pub(super) fn snappable(&self) -> Vec<Target> {
+        let scene = &self.scene;
+        let all = scene.photos.iter().flat_map(|photo| {
+            scene.objects_in(photo.id).map(|(object, annotation)| ((photo.id, object.id), annotation))
+        });
+        all.filter(|(_, annotation)| annotation.state == AnnotationState::Posed)
+            .map(|(target, _)| target)
+            .filter(|target| self.check_movable(*target).is_ok())
+            .collect()
+    }
+
+    pub(super) fn take_snaps(
+        &mut self,
+        mut snaps: Vec<(Target, Pose, Option<TwistCovariance>)>,
+        now_ms: f64,
+    ) -> Applied {
+        snaps.retain(|(target, ..)| self.check_movable(*target).is_ok());
+        if snaps.is_empty() {
+            return Ok(Vec::new());
+        }
+        let poses = snaps.iter().map(|(target, pose, _)| (*target, *pose)).collect();
+        let effects = self.change_poses("Snap on all photos", poses, PoseSource::Snap, now_ms)?;
+        snaps.into_iter().for_each(|(target, _, covariance)| self.note_snap(target, covariance));
+        Ok(effects)
     }
 
     pub(super) fn clear_pins(&mut self) -> Applied {

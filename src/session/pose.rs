@@ -243,7 +243,7 @@ impl Session {
     }
 
     /// Poses that come at once: one undo step, a line of the log each.
-    fn change_poses(
+    pub(super) fn change_poses(
         &mut self,
         label: &'static str,
         poses: Vec<(Target, Pose)>,

@@ -84,6 +84,28 @@ impl Occluders {
             .collect();
         Self((!items.is_empty()).then(|| rasterize(camera, &items, region)))
     }
+
+    /// What was measured nearer than `before_mm` is before the object as well. `measured_mm` gives the depth along the
+    /// optical axis at a pixel counted from the region's first, 0 where nothing was measured.
+    pub fn add_measured(
+        &mut self,
+        region: PixelRegion,
+        before_mm: f64,
+        measured_mm: impl Fn(u32, u32) -> f32,
+    ) {
+        let (width, height) = (region.width, region.height);
+        let count = width as usize * height as usize;
+        let empty = || RasterImage { width, height, depth_mm: vec![0.0; count], ids: vec![0; count] };
+        let image = self.0.get_or_insert_with(empty);
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        for ((x, y), (depth_mm, id)) in places.zip(image.depth_mm.iter_mut().zip(&mut image.ids)) {
+            let measured = measured_mm(x, y);
+            let is_before = measured > 0.0 && f64::from(measured) < before_mm;
+            if is_before && (*id == 0 || measured < *depth_mm) {
+                (*depth_mm, *id) = (measured, OCCLUDER_ID);
+            }
+        }
+    }
 }
 
 impl DepthView {

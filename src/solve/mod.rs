@@ -9,9 +9,12 @@ mod linear;
 mod motion;
 pub mod pins;
 pub mod snap;
+pub mod symmetry;
 #[cfg(test)]
 mod test_chance;
 mod uncertainty;
+mod weakest;
 
 pub use motion::TwistCovariance;
-pub use uncertainty::Uncertainty;
+pub use uncertainty::{Tolerances, Uncertainty};
+pub use weakest::{Weakest, Weakness, most_helpful_point, weakest};

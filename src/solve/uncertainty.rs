@@ -18,6 +18,27 @@ pub struct Uncertainty {
     pub roll_rad: f64,
 }
 
+/// How far what is taken as exact may be off, as parts of it: one standard deviation each.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tolerances {
+    pub focal: f64,
+    pub mesh_scale: f64,
+}
+
+impl TwistCovariance {
+    /// With what no pixel tells of an object whose middle is at `center_camera_mm`: ΔZ/Z = Δf/f = Δs/s.
+    pub fn with_tolerances(&self, tolerances: &Tolerances, center_camera_mm: DVec3) -> Self {
+        let along = center_camera_mm * tolerances.focal.hypot(tolerances.mesh_scale);
+        let mut about_center = self.about(center_camera_mm);
+        for row in 0..3 {
+            for column in 0..3 {
+                about_center[3 + row][3 + column] += along[row] * along[column];
+            }
+        }
+        Self::from_steps_about(center_camera_mm, &about_center)
+    }
+}
+
 impl Uncertainty {
     /// Of the object's middle, `center_mm` of the `object` frame, and of the turn about it.
     pub fn of(covariance: &TwistCovariance, camera_from_object: &Pose, center_mm: DVec3) -> Self {
@@ -46,6 +67,22 @@ fn across_and_along(covariance: &DMat3, axis: DVec3) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tolerances_widen_the_depth_alone() {
+        let center = DVec3::new(0.0, 0.0, 800.0);
+        let mut steps = [[0.0; 6]; 6];
+        (0..6).for_each(|i| steps[i][i] = 9.0 * if i < 3 { 1e-6 } else { 1.0 });
+        let covariance = TwistCovariance::from_steps_about(center, &steps);
+        let tolerances = Tolerances { focal: 0.004, mesh_scale: 0.003 };
+        let wider = covariance.with_tolerances(&tolerances, center);
+        let of = |covariance| Uncertainty::of(covariance, &Pose::from_translation(center), DVec3::ZERO);
+        let (before, after) = (of(&covariance), of(&wider));
+        // 0.5 % of 800 mm are 4 mm, and 3 and 4 are 5. Rounding of 800² on the way.
+        assert!((after.depth_mm - 5.0).abs() < 1e-6, "{after:?}");
+        assert!((after.lateral_mm - before.lateral_mm).abs() < 1e-6);
+        assert!((after.tilt_rad - before.tilt_rad).abs() < 1e-9);
+    }
 
     #[test]
     fn the_four_numbers_are_those_of_the_directions() {

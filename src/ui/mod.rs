@@ -27,8 +27,10 @@ use egui::{CentralPanel, Frame, Panel};
 use crate::interact::{Hands, SceneMove};
 use crate::math::Pose;
 use crate::platform::{SceneId, SceneSummary, StorageUse};
-use crate::scene::{ObjectId, PhotoId};
+use crate::scene::{MeshAsset, ObjectId, PhotoId, SymmetryAxis};
 use crate::session::{Command, CommandId, Effect, Session};
+use crate::solve::Weakest;
+use crate::solve::symmetry::FoundSymmetries;
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
 pub use export_dialog::ExportRequest;
@@ -117,6 +119,8 @@ pub struct Surroundings<'a> {
     pub depth: Option<std::sync::Arc<crate::photo::DepthPixels>>,
     /// An object that is on its way to its new pose: where it is drawn.
     pub drawn_pose: Option<(PhotoId, ObjectId, Pose)>,
+    /// What the last search for symmetries found.
+    pub symmetries: SymmetryView<'a>,
     pub saving: Saving,
     /// What is being loaded.
     pub busy: Option<Busy>,
@@ -134,6 +138,21 @@ impl Surroundings<'_> {
     fn drawn_pose_in(&self, shown: PhotoId) -> Option<(ObjectId, Pose)> {
         self.drawn_pose.filter(|(photo, ..)| *photo == shown).map(|(_, object, pose)| (object, pose))
     }
+}
+
+/// A motion of the selected object that is seen on the screen only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ShownMotion {
+    /// About an axis of symmetry.
+    Turn(SymmetryAxis),
+    /// To either side, as far as the pose is unsure.
+    Sway(Weakest),
+}
+
+/// What was found of a mesh's symmetries, and of which.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SymmetryView<'a> {
+    pub found: Option<(&'a std::sync::Arc<MeshAsset>, &'a FoundSymmetries)>,
 }
 
 /// What is known of the store besides its scenes.
@@ -173,6 +192,7 @@ pub struct Asked {
     pub apply_update: bool,
     pub cancel_loading: bool,
     pub export: Option<ExportRequest>,
+    pub show_motion: Option<ShownMotion>,
 }
 
 /// Draws a whole frame.
@@ -191,7 +211,11 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
             .default_size(theme::PANEL_WIDTH)
             .size_range(panels::WIDTHS)
             .resizable(true)
-            .show(ui, |ui| panels::draw(ui, session, &mut state.panels, &mut asked.commands));
+            .show(ui, |ui| {
+                let UiState { preferences, panels, .. } = state;
+                panels::draw(ui, session, around, preferences, panels, &mut asked.commands);
+            });
+        asked.show_motion = state.panels.take_asked_motion();
     }
     if !state.panels_hidden && strip::is_shown(session) {
         Panel::bottom("photo strip").frame(theme::bar_frame(&visuals)).show(ui, |ui| {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Keymap;
 use crate::platform;
+use crate::solve::Tolerances;
 
 const KEY: &str = "interface";
 
@@ -118,6 +119,8 @@ pub struct Preferences {
     pub modifiers: ModifierMap,
     /// The strip of photos shows its progress alone.
     pub strip_folded: bool,
+    /// Of the focal length and the mesh, for how sure a pose is.
+    pub tolerances: Tolerances,
 }
 
 /// As they are stored; a field that is missing is as at first.
@@ -128,6 +131,14 @@ struct Saved {
     keys: BTreeMap<String, String>,
     modifiers: ModifierMap,
     strip_folded: bool,
+    /// As parts, not per cent.
+    focal_tolerance: f64,
+    mesh_tolerance: f64,
+}
+
+/// A tolerance as it may be; what is none is as at first.
+fn tolerance(part: f64) -> f64 {
+    if (0.0..1.0).contains(&part) { part } else { 0.0 }
 }
 
 impl Preferences {
@@ -146,6 +157,8 @@ impl Preferences {
             keys: self.keymap.to_saved(),
             modifiers: self.modifiers,
             strip_folded: self.strip_folded,
+            focal_tolerance: self.tolerances.focal,
+            mesh_tolerance: self.tolerances.mesh_scale,
         };
         serde_json::to_string(&saved).unwrap_or_default()
     }
@@ -157,6 +170,10 @@ impl Preferences {
             keymap: Keymap::from_saved(&saved.keys),
             modifiers: Some(saved.modifiers).filter(ModifierMap::is_consistent).unwrap_or_default(),
             strip_folded: saved.strip_folded,
+            tolerances: Tolerances {
+                focal: tolerance(saved.focal_tolerance),
+                mesh_scale: tolerance(saved.mesh_tolerance),
+            },
         }
     }
 
@@ -180,6 +197,7 @@ mod tests {
         preferences.keymap.clear(CommandId::Undo);
         preferences.modifiers.set(DragModifier::Fine, ModifierKey::Ctrl);
         assert_eq!(preferences.modifiers.get(DragModifier::Roll), ModifierKey::Alt, "they were swapped");
+        preferences.tolerances.focal = 0.01;
         assert_eq!(Preferences::from_json(&preferences.to_json()), preferences);
         for damaged in ["", "[]", "{\"theme\": 3}", "{}"] {
             assert_eq!(Preferences::from_json(damaged), Preferences::default());

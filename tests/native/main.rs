@@ -32,5 +32,7 @@ mod scripts;
 mod shaders;
 mod storage;
 mod support;
+mod sureness;
+mod symmetry;
 
 use support::data_folder;

@@ -406,11 +406,11 @@ fn a_snap_is_a_step_and_esc_takes_it_back_until_something_else_is_done() {
     let (photo, object, annotation) = session.selected_annotation().unwrap();
     let start = annotation.camera_from_object;
     let found = start.translated(DVec3::new(2.0, 0.0, -9.0));
-    run(&mut session, Command::TakeSnap { photo, object, camera_from_object: found });
+    run(&mut session, Command::TakeSnap { photo, object, camera_from_object: found, covariance: None });
     assert_eq!(session.selected_annotation().unwrap().2.source, PoseSource::Snap);
     run(&mut session, Command::Run(CommandId::Cancel));
     assert_eq!(shown_pose(&session), start);
-    run(&mut session, Command::TakeSnap { photo, object, camera_from_object: found });
+    run(&mut session, Command::TakeSnap { photo, object, camera_from_object: found, covariance: None });
     drag(&mut session, DVec3::X);
     let end = shown_pose(&session);
     run(&mut session, Command::Run(CommandId::Cancel));

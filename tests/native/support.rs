@@ -14,6 +14,7 @@ use pinpose::ui::{Saving, StoreView, Surroundings};
 pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
     Surroundings {
         drawn_pose: None,
+        symmetries: pinpose::ui::SymmetryView::default(),
         hands,
         renderer: None,
         pixels: None,

@@ -5,6 +5,7 @@
 
 mod mesh;
 mod solver_mesh;
+pub mod symmetries;
 mod wire;
 
 use std::collections::{HashMap, VecDeque};
@@ -15,6 +16,7 @@ use crate::mesh::Mesh;
 use crate::photo::{DepthPixels, Pixels, decode, decode_depth, thumbnail};
 use crate::platform::Background;
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
+use crate::solve::symmetry::FoundSymmetries;
 use crate::ui::THUMBNAIL_SIDE_PX;
 
 use mesh::{read_mesh_reply, write_mesh};
@@ -33,6 +35,8 @@ pub enum JobKind {
     Headers,
     /// Of a mesh's file.
     SolverMesh,
+    /// Of what [`symmetries::request`] makes of a mesh.
+    Symmetries,
 }
 
 impl JobKind {
@@ -44,6 +48,7 @@ impl JobKind {
             Self::DepthMap => 3,
             Self::Headers => 4,
             Self::SolverMesh => 5,
+            Self::Symmetries => 6,
         }
     }
 }
@@ -65,6 +70,7 @@ pub enum Done {
     /// In the order of the files; an error names its file.
     Headers(Vec<Result<Arc<PhotoAsset>, String>>),
     SolverMesh(Arc<Mesh>),
+    Symmetries(FoundSymmetries),
 }
 
 /// What is asked of the worker.
@@ -198,6 +204,7 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
             .map_err(|error| error.to_string()),
         4 => Ok(write_headers(std::iter::once(&file).chain(&companions))),
         5 => solver_mesh::write(&file, &companions),
+        6 => symmetries::write(&file),
         _ => read_mesh_with(&file, &companions)
             .map(|(asset, warnings)| write_mesh(&asset, &warnings))
             .map_err(|error| error.to_string()),
@@ -224,6 +231,7 @@ fn read_reply(
             read_headers(std::iter::once(file).chain(companions), &mut reader).map(Done::Headers)
         }
         JobKind::SolverMesh => solver_mesh::read(&mut reader).map(|mesh| Done::SolverMesh(Arc::new(mesh))),
+        JobKind::Symmetries => symmetries::read(&mut reader).map(Done::Symmetries),
         JobKind::Mesh => read_mesh_reply(file, companions, &mut reader),
     };
     done.ok_or_else(damaged)

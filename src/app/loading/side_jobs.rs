@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::Loading;
-use crate::app::jobs::{Done, JobKind, Urgency};
+use crate::app::jobs::{Done, JobKind, Urgency, symmetries};
 use crate::formats::NamedFile;
 use crate::mesh::Mesh;
 use crate::photo::{DepthPixels, Pixels};
 use crate::scene::{CompanionFile, MeshAsset, PhotoAsset, Sha256};
+use crate::solve::symmetry::FoundSymmetries;
 
 impl Loading {
     /// Decodes a photo of the scene that is to be shown.
@@ -41,6 +42,12 @@ impl Loading {
         self.solver_mesh_jobs.insert(job, mesh.sha256);
     }
 
+    /// Looks for a mesh's symmetries.
+    pub fn find_symmetries(&mut self, mesh: &Arc<MeshAsset>) {
+        let job = self.jobs.submit(JobKind::Symmetries, symmetries::request(mesh), &[], Urgency::Next);
+        self.symmetry_jobs.insert(job, mesh.clone());
+    }
+
     pub fn is_worker_idle(&self) -> bool {
         self.jobs.is_idle()
     }
@@ -55,6 +62,10 @@ impl Loading {
 
     pub fn take_solver_meshes(&mut self) -> Vec<(Sha256, Option<Arc<Mesh>>)> {
         std::mem::take(&mut self.finished_solver_meshes)
+    }
+
+    pub fn take_symmetries(&mut self) -> Vec<(Arc<MeshAsset>, Option<FoundSymmetries>)> {
+        std::mem::take(&mut self.finished_symmetries)
     }
 
     /// Takes what came of one of these jobs; gives it back if it was another one's.
@@ -72,6 +83,9 @@ impl Loading {
         } else if let Some(sha256) = self.solver_mesh_jobs.remove(&job) {
             let made = if let Ok(Done::SolverMesh(mesh)) = done { Some(mesh) } else { None };
             self.finished_solver_meshes.push((sha256, made));
+        } else if let Some(mesh) = self.symmetry_jobs.remove(&job) {
+            let found = if let Ok(Done::Symmetries(found)) = done { Some(found) } else { None };
+            self.finished_symmetries.push((mesh, found));
         } else {
             return Some(done);
         }

@@ -26,6 +26,7 @@ use super::pins::Pin;
 use crate::math::{Intrinsics, Pose};
 use crate::photo::Pixels;
 use crate::raster::{Mask, PixelRegion};
+use crate::scene::DepthInMm;
 use look::{Look, object_rect};
 use picture::Picture;
 use prior::Prior;
@@ -40,6 +41,8 @@ pub struct SnapHints {
     pub pins: Vec<Pin>,
     /// Objects that may be before this one, with their poses.
     pub occluders: Vec<(Arc<ContourModel>, Pose)>,
+    /// The photo's depth map, of its size: what is nearer than the whole object is before it.
+    pub depth: Option<Arc<DepthInMm>>,
 }
 
 /// What a snap does other than usual.
@@ -160,7 +163,13 @@ impl Snap {
             hints.occluders.iter().map(|(model, pose)| (model.as_ref(), *pose)).collect();
         let picture = picture.map(|picture| {
             let region = PixelRegion::of_camera(&picture.camera);
-            let occluders = Occluders::draw(&picture.camera, &others, region);
+            let mut occluders = Occluders::draw(&picture.camera, &others, region);
+            let fitting =
+                |depth: &&Arc<DepthInMm>| (depth.width, depth.height) == (photo.width, photo.height);
+            if let Some(depth) = hints.depth.as_ref().filter(fitting) {
+                let before_mm = nearest_mm(&model, start);
+                occluders.add_measured(region, before_mm, |x, y| picture.measured_mm(depth, x, y));
+            }
             (picture, occluders)
         });
         let prior = Prior { start: *start, pins: hints.pins, reach: options.reach };
@@ -287,6 +296,15 @@ impl Snap {
             moved_mm,
         }
     }
+}
+
+/// What is nearer to the camera than this is not the object, though it be as far off as a start may be.
+fn nearest_mm(model: &ContourModel, camera_from_object: &Pose) -> f64 {
+    /// Of the object's radius: a tenth of its size.
+    const START_ERROR: f64 = 0.2;
+    let radius_mm = model.mesh().sphere().radius;
+    let center = camera_from_object.transform_point(model.center_mm());
+    center.z - (1.0 + START_ERROR) * radius_mm
 }
 
 /// Of the normal equations where a stage ended, scaled by how well they are fulfilled.

@@ -6,6 +6,7 @@ use super::palette::Palette;
 use crate::math::{ImageRect, Intrinsics};
 use crate::photo::{Pixels, half_size};
 use crate::raster::Mask;
+use crate::scene::DepthInMm;
 
 /// A cut-out of the photo, with the camera that sees just that.
 #[derive(Debug, Clone)]
@@ -91,16 +92,26 @@ impl Picture {
     }
 
     fn cut_mask(&self, mask: &Mask) -> Vec<bool> {
-        let pixels = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x as f64, y as f64)));
-        let is_set = |(x, y)| {
-            let place = ((DVec2::new(x, y) + 0.5) * self.photo_px - 0.5 + self.origin).round();
-            place.x >= 0.0
-                && place.y >= 0.0
-                && place.x < f64::from(mask.width())
-                && place.y < f64::from(mask.height())
-                && mask.get(place.x as u32, place.y as u32)
-        };
+        let (width, height) = (self.width as u32, self.height as u32);
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let is_set = |(x, y)| self.photo_pixel(x, y).is_some_and(|[x, y]| mask.get(x, y));
         pixels.map(is_set).collect()
+    }
+
+    /// The photo's pixel at the middle of one here; `None` before its first one.
+    fn photo_pixel(&self, x: u32, y: u32) -> Option<[u32; 2]> {
+        let pixel = DVec2::new(f64::from(x), f64::from(y));
+        let place = ((pixel + 0.5) * self.photo_px - 0.5 + self.origin).round();
+        (place.min_element() >= 0.0).then_some([place.x as u32, place.y as u32])
+    }
+
+    /// The depth that the photo's depth map has at a pixel here; 0 where it has none.
+    pub fn measured_mm(&self, depth: &DepthInMm, x: u32, y: u32) -> f32 {
+        let at = |[x, y]: [u32; 2]| {
+            let index = y as usize * depth.width as usize + x as usize;
+            depth.mm.get(index).copied().filter(|_| x < depth.width)
+        };
+        self.photo_pixel(x, y).and_then(at).unwrap_or(0.0)
     }
 
     /// Whether the mask says that the object is at this pixel; `None` without a mask.

@@ -18,10 +18,13 @@ mod pose_numbers;
 mod references;
 mod scene_view;
 mod section;
+mod sureness;
+mod symmetry;
 
 use egui::{Frame, Panel, Ui, UiBuilder};
 
-use crate::scene::{ObjectId, PhotoId};
+use super::{Preferences, ShownMotion, Surroundings};
+use crate::scene::{ObjectId, PhotoId, SymmetryAxis};
 use crate::session::{Command, Session};
 
 /// How wide the panel may be dragged.
@@ -41,6 +44,8 @@ pub struct PanelState {
     camera: camera::CameraForm,
     pose: pose_fields::PoseForm,
     mesh: mesh_frame::MeshForm,
+    symmetry: symmetry::SymmetryForm,
+    sureness: sureness::SurenessForm,
     rename: Option<list::Rename>,
     /// As of the last frame: another one comes into sight in its list.
     shown_photo: Option<PhotoId>,
@@ -60,18 +65,43 @@ impl PanelState {
             list::Rename::new(key, &object.name)
         });
     }
+
+    /// The axis of symmetry to be drawn over the selected object.
+    pub fn lit_axis(&self) -> Option<SymmetryAxis> {
+        self.symmetry.lit()
+    }
+
+    /// The motion of the selected object that the user wants to see.
+    pub fn take_asked_motion(&mut self) -> Option<ShownMotion> {
+        let turn = self.symmetry.take_asked_turn().map(ShownMotion::Turn);
+        turn.or_else(|| self.sureness.take_asked_sway().map(ShownMotion::Sway))
+    }
 }
 
-pub fn draw(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
+pub fn draw(
+    ui: &mut Ui,
+    session: &Session,
+    around: &Surroundings<'_>,
+    preferences: &mut Preferences,
+    state: &mut PanelState,
+    commands: &mut Vec<Command>,
+) {
     // A child of its own: nothing in it, however wide, makes the panel wider than it was dragged.
     let rect = ui.available_rect_before_wrap();
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
     inside.set_clip_rect(rect.intersect(ui.clip_rect()));
-    parts(&mut inside, session, state, commands);
+    parts(&mut inside, session, around, preferences, state, commands);
     ui.advance_cursor_after_rect(rect);
 }
 
-fn parts(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
+fn parts(
+    ui: &mut Ui,
+    session: &Session,
+    around: &Surroundings<'_>,
+    preferences: &mut Preferences,
+    state: &mut PanelState,
+    commands: &mut Vec<Command>,
+) {
     let most = (ui.available_height() * MOST_OUTPUT).max(LEAST_OUTPUT_HEIGHT);
     let (low, high) = FIRST_OUTPUT_HEIGHTS;
     let first = (ui.available_height() * FIRST_OUTPUT).clamp(low, high).min(most);
@@ -83,19 +113,28 @@ fn parts(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut 
     };
     panel.frame(frame).show(ui, |ui| output::draw(ui, session, &mut state.output, commands));
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        control_and_display(ui, session, state, commands);
+        control_and_display(ui, session, around, preferences, state, commands);
     });
 }
 
-fn control_and_display(ui: &mut Ui, session: &Session, state: &mut PanelState, commands: &mut Vec<Command>) {
+fn control_and_display(
+    ui: &mut Ui,
+    session: &Session,
+    around: &Surroundings<'_>,
+    preferences: &mut Preferences,
+    state: &mut PanelState,
+    commands: &mut Vec<Command>,
+) {
     // The scroll bar floats over the right margin.
     ui.set_max_width(ui.available_width() - 8.0);
     ui.spacing_mut().item_spacing.y = 2.0;
     section::caption(ui, "Control");
     camera::draw(ui, session, &mut state.camera, commands);
     pins::draw(ui, session, commands);
+    sureness::draw(ui, session, &mut preferences.tolerances, &mut state.sureness);
     pose_fields::draw(ui, session, &mut state.pose, commands);
     mesh_frame::draw(ui, session, &mut state.mesh, commands);
+    symmetry::draw(ui, session, around.symmetries, &mut state.symmetry, commands);
     nudge::draw(ui, session, commands);
     scene_view::draw(ui, session, commands);
     section::caption(ui, "Display");

@@ -7,7 +7,6 @@ use super::number_field::note;
 use super::section::section;
 use crate::scene::{Pin, PoseSource};
 use crate::session::{Command, CommandId, PinChange, PinReport, Session};
-use crate::solve::Uncertainty;
 use crate::solve::pins::PinPose;
 use crate::ui::command_button::{command_button, command_icon};
 use crate::ui::icons::{Icon, icon_button};
@@ -41,9 +40,6 @@ pub fn draw(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
                 camera_from_object,
                 source: PoseSource::Pins,
             });
-        }
-        if let Some(uncertainty) = &report.uncertainty {
-            sureness(ui, uncertainty, report.is_solved);
         }
         actions(ui, session, &report, &mut inside);
     });
@@ -102,21 +98,6 @@ fn alternative(
         }
         ui.label(RichText::new(format!("{:.1} px", other.rms_px)).weak());
     });
-}
-
-/// Two lines: where it is, how it is turned; one standard deviation.
-fn sureness(ui: &mut Ui, uncertainty: &Uncertainty, is_solved: bool) {
-    let Uncertainty { depth_mm, lateral_mm, tilt_rad, roll_rad } = *uncertainty;
-    let text = format!(
-        "± {depth_mm:.1} mm depth, ± {lateral_mm:.1} mm sideways\n± {:.1}° tilt, ± {:.1}° roll",
-        tilt_rad.to_degrees(),
-        roll_rad.to_degrees()
-    );
-    let of = if is_solved { "this pose" } else { "the pose that the pins give" };
-    ui.label(RichText::new(text).small()).on_hover_text(format!(
-        "How sure {of} is: one standard deviation, from how well the pins agree, with a click's 1.5 px. \
-         The focal length and the mesh's size are taken as exact: 1 % of either is 1 % of depth"
-    ));
 }
 
 fn actions(ui: &mut Ui, session: &Session, report: &PinReport, commands: &mut Vec<Command>) {

@@ -8,9 +8,8 @@ use super::list;
 use super::number_field::note;
 use super::section::section;
 use crate::math::Pose;
-use crate::mesh::Mesh;
 use crate::metrics::{LIVE_VERTICES, PoseError};
-use crate::scene::{Reference, reference_color};
+use crate::scene::{Object, Reference, Symmetries, reference_color};
 use crate::session::{Command, Session};
 use crate::ui::theme;
 
@@ -26,27 +25,29 @@ struct KnownError {
     poses: [Pose; 2],
     /// Held, so that no other mesh can come to be at its address.
     mesh: Arc<crate::scene::MeshAsset>,
+    symmetries: Symmetries,
     error: PoseError,
 }
 
 impl ErrorCache {
-    /// Goes through the mesh's vertices when a pose or the mesh is another than the last time.
-    fn error(&mut self, reference: &str, poses: [Pose; 2], mesh: &Arc<crate::scene::MeshAsset>) -> PoseError {
+    /// Goes through the mesh's vertices when a pose, the mesh or its symmetries are others than the last time.
+    fn error(&mut self, reference: &str, poses: [Pose; 2], object: &Object) -> PoseError {
         let same = |known: &&KnownError| {
-            known.reference == reference && known.poses == poses && Arc::ptr_eq(&known.mesh, mesh)
+            known.reference == reference
+                && known.poses == poses
+                && Arc::ptr_eq(&known.mesh, &object.mesh)
+                && known.symmetries == object.symmetries
         };
         if let Some(known) = self.known.iter().find(same) {
             return known.error;
         }
-        let error = error_between(&poses, &mesh.mesh);
+        let [estimate, other] = &poses;
+        let (mesh, symmetries) = (object.mesh.clone(), object.symmetries.clone());
+        let error = PoseError::between(estimate, other, &mesh.mesh, &symmetries, LIVE_VERTICES);
         self.known.retain(|known| known.reference != reference);
-        self.known.push(KnownError { reference: reference.to_owned(), poses, mesh: mesh.clone(), error });
+        self.known.push(KnownError { reference: reference.to_owned(), poses, mesh, symmetries, error });
         error
     }
-}
-
-fn error_between([estimate, reference]: &[Pose; 2], mesh: &Mesh) -> PoseError {
-    PoseError::between(estimate, reference, mesh, LIVE_VERTICES)
 }
 
 pub fn draw(ui: &mut Ui, session: &Session, cache: &mut ErrorCache, commands: &mut Vec<Command>) {
@@ -116,7 +117,7 @@ fn live_error(ui: &mut Ui, session: &Session, reference: &Reference, cache: &mut
         note(ui, &format!("No pose of {} in this photo", object.name), false);
         return;
     };
-    let error = cache.error(&reference.name, poses, &object.mesh);
+    let error = cache.error(&reference.name, poses, object);
     let text = format!(
         "{:.2}°   {:.2} mm   ADD {:.2} mm",
         error.rotation_rad.to_degrees(),
@@ -126,8 +127,10 @@ fn live_error(ui: &mut Ui, session: &Session, reference: &Reference, cache: &mut
     ui.horizontal(|ui| {
         ui.add_space(24.0);
         ui.label(RichText::new(text).small().monospace()).on_hover_text(format!(
-            "How far {} is from {}: rotation, translation, and the mean distance of the mesh's vertices (ADD)",
-            object.name, reference.name
+            "How far {} is from {}: rotation, translation, and the mean distance of the mesh's vertices (ADD){}",
+            object.name,
+            reference.name,
+            if object.symmetries.is_empty() { "" } else { ", at the symmetry where it is nearest" }
         ));
     });
 }

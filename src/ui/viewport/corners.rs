@@ -45,11 +45,12 @@ pub fn scene(ui: &Ui, rect: Rect, session: &Session, around: &Surroundings<'_>) 
 /// How far the selected object is from where the visible references have it.
 pub fn errors(ui: &Ui, whole: Rect, session: &Session) {
     let Some((photo, object, annotation)) = session.selected_annotation() else { return };
-    let Some(mesh) = session.scene().object(object).map(|object| &object.mesh.mesh) else { return };
+    let Some(object) = session.scene().object(object) else { return };
     let mut bottom = whole.right_bottom() - Vec2::splat(MARGIN);
     for reference in session.scene().references.iter().rev().filter(|reference| reference.visible) {
-        let Some(pose) = reference.poses.get(&(photo, object)) else { continue };
-        let error = PoseError::between(&annotation.camera_from_object, pose, mesh, LIVE_VERTICES);
+        let Some(pose) = reference.poses.get(&(photo, object.id)) else { continue };
+        let (mesh, symmetries) = (&object.mesh.mesh, &object.symmetries);
+        let error = PoseError::between(&annotation.camera_from_object, pose, mesh, symmetries, LIVE_VERTICES);
         let mut job = LayoutJob::default();
         let font_id = egui::TextStyle::Small.resolve(ui.style());
         let format = |color: Color32| TextFormat { font_id: font_id.clone(), color, ..TextFormat::default() };

@@ -9,6 +9,7 @@ mod paint;
 mod photo;
 mod pins;
 mod scene;
+mod symmetry_axis;
 mod unit_question;
 
 use egui::{CursorIcon, Id, Rect, Response, Sense, Ui, Vec2};
@@ -88,6 +89,15 @@ pub fn draw(
     };
     state.viewport = photo_rect.map(|rect| photo::draw(ui, rect, session, around));
     state.scene_viewport = scene_rect.map(|rect| scene::draw(ui, rect, session, around, asked));
+    if let Some(axis) = state.panels.lit_axis() {
+        let views = around.hands;
+        if let Some(place) = &state.viewport {
+            symmetry_axis::draw(ui, place, &views.photo_view, session, &axis);
+        }
+        if let Some(place) = &state.scene_viewport {
+            symmetry_axis::draw(ui, place, &views.scene_view, session, &axis);
+        }
+    }
     let places = [state.viewport, state.scene_viewport];
     chooser::draw(ui, whole, session, &mut asked.commands);
     corners::errors(ui, whole, session);

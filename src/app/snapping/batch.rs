@@ -1,0 +1,126 @@
+//! Snap on all photos: pose after pose, and all that improved taken over at once.
+
+use std::collections::VecDeque;
+
+use super::{Asked, PinPose};
+use crate::math::Pose;
+use crate::scene::{ObjectId, PhotoId};
+use crate::session::{Command, Notice};
+use crate::solve::snap::{SnapOutcome, SnapReach, SnapVerdict};
+
+/// Poses that are being snapped one after the other.
+pub struct Batch {
+    waiting: VecDeque<(PhotoId, ObjectId)>,
+    total: usize,
+    moved: Vec<(Asked, SnapOutcome)>,
+    /// Which stay as they are.
+    refused: usize,
+    /// Of those that moved, the one that fits its photo least.
+    worst: Option<(f64, Asked)>,
+}
+
+impl Batch {
+    pub fn new(targets: Vec<(PhotoId, ObjectId)>) -> Self {
+        let total = targets.len();
+        Self { waiting: targets.into(), total, moved: Vec::new(), refused: 0, worst: None }
+    }
+
+    pub fn text(&self) -> String {
+        format!("Snapping {} of {}…", (self.moved.len() + self.refused + 1).min(self.total), self.total)
+    }
+
+    /// Where an object of a photo is now: another one's new pose may be before it.
+    pub fn moved_to(&self, photo: PhotoId, object: ObjectId) -> Option<Pose> {
+        let is_it = |(asked, _): &&(Asked, SnapOutcome)| (asked.photo, asked.object) == (photo, object);
+        self.moved.iter().find(is_it).map(|(_, outcome)| outcome.camera_from_object)
+    }
+
+    /// One that could not be tried.
+    pub fn leave(&mut self) {
+        self.refused += 1;
+    }
+
+    pub fn take(&mut self, asked: Asked, outcome: &SnapOutcome) {
+        if outcome.verdict != SnapVerdict::Improved {
+            self.refused += 1;
+            return;
+        }
+        self.moved.push((asked, *outcome));
+        if self.worst.is_none_or(|(score, _)| outcome.score_after < score) {
+            self.worst = Some((outcome.score_after, asked));
+        }
+    }
+}
+
+impl PinPose {
+    pub(in crate::app) fn start_batch(&mut self, targets: Vec<(PhotoId, ObjectId)>) {
+        self.snapping.cancel();
+        self.snapping.batch = Some(Batch::new(targets));
+        self.ctx.request_repaint();
+    }
+
+    /// Sends the next one on its way, or ends the batch.
+    pub(super) fn go_on_with_batch(&mut self) {
+        let Some(batch) = &mut self.snapping.batch else { return };
+        while let Some((photo, object)) = batch.waiting.pop_front() {
+            let annotation = self.session.scene().annotation(photo, object);
+            let Some(annotation) = annotation.filter(|_| self.session.check_movable((photo, object)).is_ok())
+            else {
+                batch.refused += 1;
+                continue;
+            };
+            let start = annotation.camera_from_object;
+            self.snapping.asked = Some(Asked { photo, object, start, reach: SnapReach::Near });
+            self.ctx.request_repaint();
+            return;
+        }
+        if let Some(batch) = self.snapping.batch.take() {
+            self.end_batch(batch);
+        }
+    }
+
+    /// Stops what is under way; what is done of a batch stays. False if there is nothing to stop.
+    pub(in crate::app) fn cancel_snap(&mut self) -> bool {
+        let batch = self.snapping.batch.take();
+        let was_busy = self.snapping.cancel() || batch.is_some();
+        if let Some(batch) = batch {
+            self.end_batch(batch);
+        }
+        was_busy
+    }
+
+    fn end_batch(&mut self, batch: Batch) {
+        // Where somebody has gone on by hand in the meantime, that stays.
+        let scene = self.session.scene();
+        let is_as_it_was = |(asked, _): &(Asked, SnapOutcome)| {
+            let present = scene.annotation(asked.photo, asked.object);
+            present.is_some_and(|annotation| annotation.camera_from_object == asked.start)
+        };
+        let moved = batch.moved.into_iter().filter(is_as_it_was);
+        let poses: Vec<_> = moved
+            .map(|(asked, outcome)| {
+                ((asked.photo, asked.object), outcome.camera_from_object, outcome.covariance)
+            })
+            .collect();
+        let stayed = batch.total - poses.len();
+        let mut text = format!("Snapped {} of {} poses", poses.len(), batch.total);
+        if stayed > 0 {
+            text += &format!(", {stayed} stay as they are");
+        }
+        if let Some(worst) = batch.worst.filter(|_| !poses.is_empty()) {
+            text += &format!(". {}", self.words_of_worst(worst));
+        }
+        if !poses.is_empty() {
+            self.apply(Command::TakeSnaps(poses));
+        }
+        self.notify(Notice::info(text));
+    }
+
+    /// Where to look first.
+    fn words_of_worst(&self, (score, asked): (f64, Asked)) -> String {
+        let scene = self.session.scene();
+        let photo = scene.photo(asked.photo).map_or("", |photo| &photo.name);
+        let object = scene.object(asked.object).map_or("", |object| &object.name);
+        format!("Least sure: {object} in {photo}, fit {:.0} %", 100.0 * score)
+    }
+}

@@ -1,0 +1,96 @@
+//! How sure the selected pose is, and what would make it surer.
+
+use glam::DVec3;
+
+use super::Session;
+use crate::math::{Pose, Ray};
+use crate::scene::{CameraOrigin, Object, ObjectId, PhotoId, PoseSource};
+use crate::solve::pins::PinOptions;
+use crate::solve::{Tolerances, TwistCovariance, Uncertainty, Weakest, most_helpful_point, weakest};
+
+/// Points of the mesh that are thought of as the next pin.
+const MOST_CANDIDATES: usize = 300;
+/// Of the radius: a point is seen if the ray to it meets the surface no farther than this before it.
+const SEEN_PART: f64 = 0.02;
+
+/// How sure a pose is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sureness {
+    /// [`PoseSource::Pins`] or [`PoseSource::Snap`].
+    pub source: PoseSource,
+    pub uncertainty: Uncertainty,
+    pub weakest: Option<Weakest>,
+    pub helpful_pin: Option<HelpfulPin>,
+}
+
+/// A point of the surface where a pin would make the pose surest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HelpfulPin {
+    /// From the object's middle, in camera axes, in radii of the object.
+    pub way: DVec3,
+    /// What would be left of the depth's standard deviation.
+    pub depth_mm: f64,
+}
+
+impl Session {
+    /// Keeps how sure a snap was of its pose, as long as the pose is that one.
+    pub(super) fn note_snap(&mut self, target: (PhotoId, ObjectId), covariance: Option<TwistCovariance>) {
+        let pose = self.scene.annotation(target.0, target.1).map(|annotation| annotation.camera_from_object);
+        match pose.zip(covariance) {
+            Some(known) => self.snap_covariances.insert(target, known),
+            None => self.snap_covariances.remove(&target),
+        };
+    }
+
+    /// How sure the selected pose is: by its last snap, else by its pins. `None` where neither gave it.
+    pub fn sureness(&self, tolerances: &Tolerances) -> Option<Sureness> {
+        let (photo, object, annotation) = self.selected_annotation()?;
+        let pose = &annotation.camera_from_object;
+        let snapped = self.snap_covariances.get(&(photo, object)).filter(|(snapped, _)| snapped == pose);
+        let (source, covariance) = match snapped {
+            Some((_, covariance)) => (PoseSource::Snap, *covariance),
+            None => {
+                let report = self.pin_report().filter(|report| report.is_solved)?;
+                (PoseSource::Pins, report.covariance?)
+            }
+        };
+        let (photo, object) = (self.scene.photo(photo)?, self.scene.object(object)?);
+        let mut tolerances = *tolerances;
+        if let CameraOrigin::Pins { relative_sigma } = photo.camera_origin {
+            tolerances.focal = tolerances.focal.max(relative_sigma);
+        }
+        let sphere = object.mesh.mesh.sphere();
+        let wide = covariance.with_tolerances(&tolerances, pose.transform_point(sphere.center));
+        let helpful = most_helpful_point(
+            &photo.camera,
+            pose,
+            &wide,
+            (sphere.center, sphere.radius),
+            PinOptions::default().click_sigma_px,
+            seen_points(object, pose),
+        );
+        let way =
+            |point: DVec3| pose.rotation * (point - sphere.center) / sphere.radius.max(f64::MIN_POSITIVE);
+        Some(Sureness {
+            source,
+            uncertainty: Uncertainty::of(&wide, pose, sphere.center),
+            weakest: weakest(&wide, pose, sphere.center, sphere.radius),
+            helpful_pin: helpful.map(|(point, depth_mm)| HelpfulPin { way: way(point), depth_mm }),
+        })
+    }
+}
+
+/// Points of the mesh that the camera sees.
+fn seen_points<'a>(object: &'a Object, camera_from_object: &Pose) -> impl Iterator<Item = DVec3> + 'a {
+    let mesh = &object.mesh.mesh;
+    let eye = camera_from_object.inverse().translation_mm;
+    let step = mesh.positions_mm().len().div_ceil(MOST_CANDIDATES).max(1);
+    let slack_mm = SEEN_PART * mesh.sphere().radius;
+    let is_seen = move |point: &DVec3| {
+        let Some(direction) = (*point - eye).try_normalize() else { return false };
+        let hit = object.mesh.bvh.cast(mesh, &Ray { origin: eye, direction });
+        // A ray to a corner may just miss it.
+        hit.is_none_or(|hit| hit.distance_mm > point.distance(eye) - slack_mm)
+    };
+    mesh.positions_mm().iter().step_by(step).map(|point| point.as_dvec3()).filter(is_seen)
+}
