@@ -14,6 +14,7 @@ pub mod pack;
 mod protocol;
 pub mod questionnaire;
 mod record;
+mod replay;
 mod results;
 mod schedule;
 mod stage;
@@ -31,6 +32,7 @@ pub use protocol::{
     SampleSets, Saving, Schedule, StartPose, Study, StudyObject, StudyPhoto, Texts, Tool, TrialOrder,
 };
 pub use record::{PoseRecord, SymmetriesRecord};
+pub use replay::Replay;
 pub use results::{
     Answer, AnswerValue, Environment, Feedback, FileRecord, Outcome, PairChoice, Participant, Pause,
     PauseKind, PracticeResult, QuestionnaireResult, RESULTS_SCHEMA, Results, StudyRecord, TrialResult,

@@ -10,6 +10,7 @@ impl Participating {
         let study = match &self.state {
             State::Running(running) => Some(&running.ready.files.study),
             State::AskId(ready) | State::LookingBack { ready, .. } => Some(&ready.files.study),
+            State::Watching(watching) => Some(watching.study()),
             State::Loading(_) | State::Problem { .. } => None,
         };
         let screen = match &self.state {
@@ -21,6 +22,7 @@ impl Participating {
             State::Problem { text, can_retry } => StudyScreen::Problem { text, can_retry: *can_retry },
             State::AskId(_) => StudyScreen::AskId,
             State::Running(running) => running.screen(busy),
+            State::Watching(watching) => StudyScreen::Replay(watching.view()),
         };
         StudyView {
             title: study.map_or("", |study| &study.title),
@@ -49,6 +51,7 @@ impl Participating {
             StudyScreen::Rest { .. } => "rest",
             StudyScreen::Questionnaire { .. } => "questionnaire",
             StudyScreen::Finish(_) => "finish",
+            StudyScreen::Replay(_) => "replay",
         }
     }
 }
@@ -89,9 +92,7 @@ impl Running {
                 let trials = plan.trials.iter().filter(|trial| trial.condition == condition.id).count();
                 StudyScreen::Begin { condition, number, count: plan.conditions.len(), trials }
             }),
-            Step::Trial(index) => {
-                StudyScreen::Trial(self.trial_view(index, plan.trials.len(), false, busy))
-            }
+            Step::Trial(index) => StudyScreen::Trial(self.trial_view(index, plan.trials.len(), false, busy)),
             Step::Rest { trial } => StudyScreen::Rest { done: trial, all: plan.trials.len() },
             Step::Questionnaire { questionnaire, condition } => {
                 let about = condition.filter(|_| plan.conditions.len() > 1);
@@ -114,9 +115,10 @@ impl Running {
     ) -> TrialView<'a> {
         let limits = &self.ready.files.study.limits;
         let trial = self.participation.trial();
-        let seconds_left = limits.trial_seconds.filter(|_| !is_practice).map(|seconds| {
-            seconds - trial.map_or(0.0, RunningTrial::time_ms) / 1000.0
-        });
+        let seconds_left = limits
+            .trial_seconds
+            .filter(|_| !is_practice)
+            .map(|seconds| seconds - trial.map_or(0.0, RunningTrial::time_ms) / 1000.0);
         let worked = self.participation.minutes_since_rest(platform::now_ms());
         TrialView {
             number: index + 1,

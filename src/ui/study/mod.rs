@@ -6,6 +6,7 @@ mod page;
 mod practice;
 mod questionnaire;
 mod questions;
+mod replay;
 mod text;
 mod trial;
 
@@ -19,6 +20,7 @@ use crate::study::questionnaire::TlxScale;
 use crate::study::{Answer, AnswerValue, Condition, Feedback, Item, PairChoice, Questionnaire, Tool};
 
 pub use finish::{FinishView, Sending};
+pub use replay::ReplayView;
 pub use text::Pictures;
 pub use trial::TrialView;
 
@@ -26,22 +28,53 @@ pub use trial::TrialView;
 #[derive(Debug, Clone, Copy)]
 pub enum StudyScreen<'a> {
     /// Files are on their way: how many of how many.
-    Loading { done: usize, all: usize },
+    Loading {
+        done: usize,
+        all: usize,
+    },
     /// It cannot go on; a sentence that says why.
-    Problem { text: &'a str, can_retry: bool },
+    Problem {
+        text: &'a str,
+        can_retry: bool,
+    },
     /// The link names no participant.
     AskId,
-    Consent { text: &'a str },
+    Consent {
+        text: &'a str,
+    },
     Declined,
-    Instructions { text: &'a str, condition: &'a Condition, practice: usize, trials: usize },
-    Questions { items: &'a [Item] },
+    Instructions {
+        text: &'a str,
+        condition: &'a Condition,
+        practice: usize,
+        trials: usize,
+    },
+    Questions {
+        items: &'a [Item],
+    },
     Trial(TrialView<'a>),
-    Feedback { feedback: &'a Feedback, may_try_again: bool },
+    Feedback {
+        feedback: &'a Feedback,
+        may_try_again: bool,
+    },
     /// Before a condition's first trial.
-    Begin { condition: &'a Condition, number: usize, count: usize, trials: usize },
-    Rest { done: usize, all: usize },
-    Questionnaire { questionnaire: &'a Questionnaire, about: Option<&'a str>, pairs: &'a [TlxPair] },
+    Begin {
+        condition: &'a Condition,
+        number: usize,
+        count: usize,
+        trials: usize,
+    },
+    Rest {
+        done: usize,
+        all: usize,
+    },
+    Questionnaire {
+        questionnaire: &'a Questionnaire,
+        about: Option<&'a str>,
+        pairs: &'a [TlxPair],
+    },
     Finish(FinishView<'a>),
+    Replay(ReplayView<'a>),
 }
 
 pub type TlxPair = (&'static TlxScale, &'static TlxScale);
@@ -83,6 +116,11 @@ pub enum StudyRequest {
     Forget,
     /// A researcher has seen enough.
     LeavePreview,
+    WatchTrial(usize),
+    Play(bool),
+    /// Milliseconds since the trial was shown.
+    PlayAt(f64),
+    Speed(f64),
 }
 
 /// What is typed and chosen, until it is sent on.
@@ -138,6 +176,15 @@ pub fn draw(
         if state.study.help_is_open {
             state.study.help_is_open = trial::help(ui.ctx(), view, trial);
         }
+    } else if let StudyScreen::Replay(replay) = &view.screen {
+        let visuals = ui.ctx().global_style().visuals.clone();
+        Panel::top("replay bar").frame(theme::bar_frame(&visuals)).show(ui, |ui| {
+            replay::bar(ui, replay, requests);
+        });
+        CentralPanel::default().frame(Frame::NONE.fill(theme::VIEWPORT_BACKGROUND)).show(ui, |ui| {
+            theme::use_dark(ui);
+            viewport::draw_for_study(ui, session, around, state, &mut asked, &[]);
+        });
     } else {
         (state.viewport, state.scene_viewport) = (None, None);
         let fill = ui.visuals().panel_fill;

@@ -92,7 +92,7 @@ fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut V
         }
         StudyScreen::Finish(finish) => finish::draw(ui, view, &finish, requests),
         // Drawn with the viewport.
-        StudyScreen::Trial(_) => {}
+        StudyScreen::Trial(_) | StudyScreen::Replay(_) => {}
     }
 }
 
@@ -123,7 +123,9 @@ fn what_comes(practice: usize, trials: usize) -> String {
     match practice {
         0 => format!("{} to work on.", photos(trials)),
         1 => format!("First one photo to practise, then {} that count.", photos(trials).to_lowercase()),
-        _ => format!("First {practice} photos to practise, then {} that count.", photos(trials).to_lowercase()),
+        _ => {
+            format!("First {practice} photos to practise, then {} that count.", photos(trials).to_lowercase())
+        }
     }
 }
 
