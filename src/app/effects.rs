@@ -21,6 +21,8 @@ impl PinPose {
             Effect::Snap { photo, object, reach } => self.start_snap(photo, object, reach),
             Effect::SnapAll(targets) => self.start_batch(targets),
             Effect::FindSymmetries(object) => self.find_symmetries(object),
+            Effect::ShowExampleStudy => self.fetch_example_study(),
+            Effect::PickResults => self.pick_results(),
             Effect::CopyText(text) => self.ctx.copy_text(text),
             Effect::NewScene => self.new_scene(),
             Effect::ShowScenes => self.show_scenes(),
@@ -33,6 +35,7 @@ impl PinPose {
             Effect::Notify(notice) => self.notify(notice),
             Effect::AskForPose
             | Effect::AskForExport
+            | Effect::BuildStudy
             | Effect::TogglePalette
             | Effect::ToggleShortcuts
             | Effect::TogglePanels

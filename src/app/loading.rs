@@ -48,6 +48,9 @@ pub struct Loading {
     depth_jobs: HashMap<u64, Sha256>,
     finished_depths: Vec<(Sha256, Option<Arc<DepthPixels>>)>,
     solver_mesh_jobs: HashMap<u64, Sha256>,
+    /// Files of a study by their paths in it.
+    study_jobs: HashMap<u64, String>,
+    finished_for_study: Vec<side_jobs::StudyFile>,
     finished_solver_meshes: Vec<(Sha256, Option<Arc<Mesh>>)>,
     symmetry_jobs: HashMap<u64, Arc<MeshAsset>>,
     finished_symmetries: Vec<(Arc<MeshAsset>, Option<FoundSymmetries>)>,
@@ -134,6 +137,8 @@ impl Loading {
             depth_jobs: HashMap::new(),
             finished_depths: Vec::new(),
             solver_mesh_jobs: HashMap::new(),
+            study_jobs: HashMap::new(),
+            finished_for_study: Vec::new(),
             finished_solver_meshes: Vec::new(),
             symmetry_jobs: HashMap::new(),
             finished_symmetries: Vec::new(),

@@ -5,6 +5,7 @@
 
 mod answers;
 mod autosave;
+mod building;
 mod datasets;
 mod depth_maps;
 mod effects;
@@ -20,6 +21,7 @@ mod photo_cache;
 mod pictures;
 mod scenes;
 mod snapping;
+mod study;
 mod symmetry;
 mod thumbnails;
 mod widgets;
@@ -35,6 +37,7 @@ use crate::ui::{self, SharedRenderer, UiState};
 
 pub use jobs::run_job;
 pub use scenes::StartWith;
+pub use study::Link as StudyLink;
 
 /// The whole program.
 pub struct PinPose {
@@ -57,11 +60,14 @@ pub struct PinPose {
     snapping: snapping::Snapping,
     symmetries: symmetry::SymmetrySearch,
     motion: Option<motion::Motion>,
+    building: building::Building,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
     layers_before_hold: Option<crate::scene::Layers>,
     events: events::Events,
+    /// Somebody takes part in a study: nothing else of the program is there then.
+    study: Option<Box<study::Participating>>,
 }
 
 /// What the program starts with.
@@ -107,10 +113,12 @@ impl PinPose {
             snapping: snapping::Snapping::default(),
             symmetries: symmetry::SymmetrySearch::default(),
             motion: None,
+            building: building::Building::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
             events: events::Events::default(),
+            study: None,
         };
         app.start_with(start.with);
         app
@@ -124,6 +132,9 @@ impl PinPose {
     }
 
     fn try_apply(&mut self, command: Command) -> Result<(), String> {
+        if self.is_in_study() {
+            return self.apply_in_study(command, platform::now_ms());
+        }
         if matches!(command, Command::CancelGesture | Command::Run(crate::session::CommandId::Cancel)) {
             self.hands.cancel();
         }
@@ -146,6 +157,9 @@ impl PinPose {
 impl eframe::App for PinPose {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
         self.performance.begin_frame(frame.info().cpu_usage);
+        if self.is_in_study() {
+            return self.study_logic(ctx);
+        }
         self.tick_scenes();
         self.take_loaded();
         self.take_dropped(ctx);
@@ -161,11 +175,15 @@ impl eframe::App for PinPose {
         self.tick_snap();
         self.tick_symmetries();
         self.tick_motion();
+        self.tick_building();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if self.is_in_study() {
+            return self.study_ui(ui);
+        }
         let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
         let depth = self.session.photo().map(|photo| photo.id).and_then(|photo| self.depth_of(photo));
         let open_scene = self.autosave.id();
@@ -191,6 +209,7 @@ impl eframe::App for PinPose {
                 usage: self.scenes.usage(),
                 now_ms: platform::now_ms(),
             },
+            builder: Some(self.building.view()),
             update_ready: platform::update_offer().is_some(),
             dataset: self.datasets.view(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
@@ -211,6 +230,9 @@ impl eframe::App for PinPose {
         }
         if let Some(request) = asked.export {
             self.start_export(request);
+        }
+        if let Some(build) = asked.study_build {
+            self.start_building(build);
         }
         self.place_views();
         if let Some(moved) = asked.scene_move {
@@ -235,7 +257,9 @@ impl eframe::App for PinPose {
     }
 
     fn on_exit(&mut self) {
-        self.autosave.save_now(&self.session, platform::now_ms());
+        if !self.is_in_study() {
+            self.autosave.save_now(&self.session, platform::now_ms());
+        }
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

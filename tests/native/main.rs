@@ -31,6 +31,8 @@ mod scenes_dialog;
 mod scripts;
 mod shaders;
 mod storage;
+mod studies;
+mod study_flow;
 mod support;
 mod sureness;
 mod symmetry;

@@ -10,7 +10,20 @@ use crate::photo::{DepthPixels, Pixels};
 use crate::scene::{CompanionFile, MeshAsset, PhotoAsset, Sha256};
 use crate::solve::symmetry::FoundSymmetries;
 
+/// A study's file by its path in it, and what was made of it.
+pub type StudyFile = (String, Result<Done, String>);
+
 impl Loading {
+    /// Reads a mesh of a study, or the header of a photo.
+    pub fn read_for_study(&mut self, kind: JobKind, path: &str, file: NamedFile, companions: &[NamedFile]) {
+        let job = self.jobs.submit(kind, file, companions, Urgency::InTurn);
+        self.study_jobs.insert(job, path.to_owned());
+    }
+
+    pub fn take_for_study(&mut self) -> Vec<StudyFile> {
+        std::mem::take(&mut self.finished_for_study)
+    }
+
     /// Decodes a photo of the scene that is to be shown.
     pub fn decode(&mut self, photo: &PhotoAsset) {
         self.jobs.submit(JobKind::Photo, file_of(photo), &[], Urgency::Next);
@@ -86,6 +99,8 @@ impl Loading {
         } else if let Some(mesh) = self.symmetry_jobs.remove(&job) {
             let found = if let Ok(Done::Symmetries(found)) = done { Some(found) } else { None };
             self.finished_symmetries.push((mesh, found));
+        } else if let Some(path) = self.study_jobs.remove(&job) {
+            self.finished_for_study.push((path, done));
         } else {
             return Some(done);
         }
