@@ -39,4 +39,5 @@ pub mod render;
 pub mod scene;
 pub mod session;
 pub mod solve;
+pub mod study;
 pub mod ui;
