@@ -8,7 +8,7 @@
 //! | 10 | `page`, `main.rs` | entries: the wasm's exports, the native program |
 //! | 9 | [`app`], `api`, [`cli`] | the program; `window.pinpose`; the command line |
 //! | 8 | [`ui`] | panels, viewport, dialogs, theme |
-//! | 7 | [`render`], [`interact`] | wgpu passes (knows no UI); gestures to commands (knows no egui) |
+//! | 7 | [`render`], [`interact`], [`study`] | wgpu passes (knows no UI); gestures to commands (knows no egui); studies as data and rules |
 //! | 6 | [`session`] | a scene being worked on: commands, undo, imports |
 //! | 5 | [`formats`], [`solve`], [`metrics`] | files to data and back; poses from pins and pictures; how far a pose is from another |
 //! | 4 | [`scene`], [`raster`] | plain data; the CPU rasteriser, the renderer's reference |

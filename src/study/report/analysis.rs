@@ -181,8 +181,7 @@ impl Analysis {
             }
             for participant in 0..self.participants.len() {
                 let is_candidate = |row: &PairErrors| {
-                    row.participant == participant
-                        && self.samples.get(row.sample).map(|s| s.set) == Some(set)
+                    row.participant == participant && self.samples.get(row.sample).map(|s| s.set) == Some(set)
                 };
                 for at in lowest(&self.pairs, is_candidate, |row| row.differences.get(Measure::Add)) {
                     self.pairs[at].is_kept = true;

@@ -53,8 +53,7 @@ impl AnalysisJob {
         let simulated = input.is_simulated();
         let ReportInput { title, sets, samples, conditions, mut participants, remarks } = input;
         for participant in &mut participants {
-            let is_known =
-                |trial: &Trial| trial.sample < samples.len() && trial.condition < conditions.len();
+            let is_known = |trial: &Trial| trial.sample < samples.len() && trial.condition < conditions.len();
             participant.trials.retain(is_known);
         }
         let tasks: Vec<Task> = (0..samples.len()).rev().map(|sample| Task::Model { sample }).collect();
@@ -156,17 +155,7 @@ impl AnalysisJob {
         let truth = self.analysis.samples.get(sample)?.truth;
         let errors = self.model(sample)?.difference(&pose, &truth);
         let (is_best, is_kept) = (false, false);
-        Some(TrialErrors {
-            participant,
-            trial,
-            sample,
-            condition,
-            repeat,
-            seconds,
-            errors,
-            is_best,
-            is_kept,
-        })
+        Some(TrialErrors { participant, trial, sample, condition, repeat, seconds, errors, is_best, is_kept })
     }
 
     fn pair_errors(&self, participant: usize, [first, second]: [usize; 2]) -> Option<PairErrors> {
@@ -189,12 +178,7 @@ impl AnalysisJob {
     ) -> Option<AgreementErrors> {
         let (first, second) = (self.trial(participants[0], first)?, self.trial(participants[1], second)?);
         let differences = self.model(first.sample)?.difference(&second.pose, &first.pose);
-        Some(AgreementErrors {
-            sample: first.sample,
-            condition: first.condition,
-            participants,
-            differences,
-        })
+        Some(AgreementErrors { sample: first.sample, condition: first.condition, participants, differences })
     }
 }
 

@@ -116,8 +116,7 @@ impl Model {
         let center = self.mesh.bounds().center();
         let depth_mm = pose.transform_point(center).z - reference.transform_point(center).z;
         let angles = self.symmetries.iter().map(|symmetry| pose.angle_to(&(*reference * *symmetry)));
-        let ad_mm =
-            self.tree.as_ref().map_or(plain.add_mm, |tree| adi_mm(pose, reference, &self.mesh, tree));
+        let ad_mm = self.tree.as_ref().map_or(plain.add_mm, |tree| adi_mm(pose, reference, &self.mesh, tree));
         Difference([
             plain.rotation_rad.to_degrees(),
             plain.translation_mm,

@@ -17,9 +17,10 @@ pub fn csv(table: &Table) -> String {
     }
     text += &(heads.join(",") + "\n");
     let is_double = |at: usize| {
-        table.rows.iter().any(|row| {
-            matches!(row.get(at), Some(Cell::MeanAndDeviation(..) | Cell::Between(..)))
-        })
+        table
+            .rows
+            .iter()
+            .any(|row| matches!(row.get(at), Some(Cell::MeanAndDeviation(..) | Cell::Between(..))))
     };
     let doubles: Vec<bool> = (0..table.columns.len()).map(is_double).collect();
     for row in &table.rows {
@@ -56,8 +57,7 @@ fn quoted(text: &str) -> String {
 /// A `table` environment for the package booktabs.
 pub fn latex(table: &Table) -> String {
     let is_text = |at: usize| table.rows.iter().any(|row| matches!(row.get(at), Some(Cell::Text(_))));
-    let alignment: String =
-        (0..table.columns.len()).map(|at| if is_text(at) { 'l' } else { 'r' }).collect();
+    let alignment: String = (0..table.columns.len()).map(|at| if is_text(at) { 'l' } else { 'r' }).collect();
     let line = |cells: Vec<String>| format!("    {} \\\\\n", cells.join(" & "));
     let mut text = format!(
         "% Needs \\usepackage{{booktabs}}.\n\\begin{{table}}\n  \\centering\n  \\caption{{{}. {}}}\n  \
