@@ -4,35 +4,44 @@ use super::table::{Cell, Table};
 
 /// RFC 4180, with every digit of every number; units are in the names of the columns.
 pub fn csv(table: &Table) -> String {
-    let mut text = String::new();
-    let mut heads = Vec::new();
-    for (at, column) in table.columns.iter().enumerate() {
+    let kinds: Vec<Kind> = (0..table.columns.len()).map(|at| kind_of(table, at)).collect();
+    let heads = table.columns.iter().zip(&kinds).map(|(column, kind)| {
         let name = column_name(&column.heading());
-        // What a column holds shows in any row that has something.
-        match table.rows.iter().filter_map(|row| row.get(at)).find(|cell| **cell != Cell::Missing) {
-            Some(Cell::MeanAndDeviation(..)) => heads.extend([name.clone(), format!("{name}_sd")]),
-            Some(Cell::Between(..)) => heads.extend([format!("{name}_low"), format!("{name}_high")]),
-            _ => heads.push(name),
+        match kind {
+            Kind::Single => name,
+            Kind::Deviation => format!("{name},{name}_sd"),
+            Kind::Interval => format!("{name}_low,{name}_high"),
         }
-    }
-    text += &(heads.join(",") + "\n");
-    let is_double = |at: usize| {
-        table
-            .rows
-            .iter()
-            .any(|row| matches!(row.get(at), Some(Cell::MeanAndDeviation(..) | Cell::Between(..))))
-    };
-    let doubles: Vec<bool> = (0..table.columns.len()).map(is_double).collect();
+    });
+    let mut text = heads.collect::<Vec<_>>().join(",") + "\n";
     for row in &table.rows {
-        let cells = row.iter().zip(&doubles).map(|(cell, is_double)| csv_cell(cell, *is_double));
+        let cells = row.iter().zip(&kinds).map(|(cell, kind)| csv_cell(cell, *kind != Kind::Single));
         text += &(cells.collect::<Vec<_>>().join(",") + "\n");
     }
     text
 }
 
+/// How many columns of a CSV one column of a table takes, and for what.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Single,
+    Deviation,
+    Interval,
+}
+
+fn kind_of(table: &Table, at: usize) -> Kind {
+    let of_cell = |cell: &Cell| match cell {
+        Cell::MeanAndDeviation(..) => Some(Kind::Deviation),
+        Cell::Between(..) => Some(Kind::Interval),
+        _ => None,
+    };
+    table.rows.iter().filter_map(|row| row.get(at)).find_map(of_cell).unwrap_or(Kind::Single)
+}
+
 fn csv_cell(cell: &Cell, is_double: bool) -> String {
     match cell {
         Cell::Missing if is_double => ",".to_owned(),
+        Cell::Number(number) if is_double => format!("{number},"),
         Cell::Missing => String::new(),
         Cell::Text(text) => quoted(text),
         Cell::Count(count) => count.to_string(),
