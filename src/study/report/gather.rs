@@ -11,7 +11,7 @@ use super::input::{ReportCondition, ReportInput, ReportSample, SampleView};
 use super::people::{participant_of, sorted_and_labelled};
 use crate::formats::{NamedFile, read_mesh_with};
 use crate::mesh::Mesh;
-use crate::scene::Sha256;
+use crate::scene::{MeshFrame, Sha256};
 use crate::study::{Results, Study, StudyError, Truth, TruthSample};
 
 /// Why there can be no report.
@@ -31,7 +31,7 @@ pub enum GatherError {
 
 /// Files of a study that were recognised by their content; what is none of them may be a mesh or a photo.
 #[derive(Debug, Default)]
-pub struct StudyFiles {
+pub struct ReportFiles {
     pub results: Vec<(String, Results)>,
     pub truths: Vec<Truth>,
     pub studies: Vec<Study>,
@@ -39,7 +39,7 @@ pub struct StudyFiles {
     assets: BTreeMap<String, NamedFile>,
 }
 
-impl StudyFiles {
+impl ReportFiles {
     /// Sorts files by what they say they are. A result or truth file that cannot be read is an error, other JSON is left out.
     pub fn read(files: &[NamedFile]) -> Result<Self, GatherError> {
         let mut found = Self::default();
@@ -87,17 +87,25 @@ impl StudyFiles {
                 Some(NamedFile { name: asset.name.clone(), bytes })
             })
             .collect();
-        let (asset, _) =
-            read_mesh_with(file, &companions).map_err(|error| format!("{}: {error}", sample.object))?;
-        let mesh_from_file = DMat4::from_cols_array_2d(&sample.mesh_from_file).transpose();
-        if mesh_from_file == DMat4::IDENTITY {
-            return Ok(asset.mesh);
-        }
-        asset
-            .mesh
-            .transformed(&DAffine3::from_mat4(mesh_from_file))
+        mesh_of_study(file, &companions, &sample.mesh_from_file)
             .map_err(|error| format!("{}: {error}", sample.object))
     }
+}
+
+/// A study's mesh in the `object` frame. `companions` are the files that it asks for, by their names.
+pub fn mesh_of_study(
+    file: &NamedFile,
+    companions: &[NamedFile],
+    mesh_from_file: &[[f64; 4]; 4],
+) -> Result<Mesh, String> {
+    let (asset, _) = read_mesh_with(file, companions).map_err(|error| error.to_string())?;
+    let mesh_from_file = DMat4::from_cols_array_2d(mesh_from_file).transpose();
+    if mesh_from_file == DMat4::IDENTITY {
+        return Ok(asset.mesh);
+    }
+    // Another matrix than these would give numbers that are none.
+    MeshFrame::checked(mesh_from_file).map_err(|error| error.to_string())?;
+    asset.mesh.transformed(&DAffine3::from_mat4(mesh_from_file)).map_err(|error| error.to_string())
 }
 
 /// What a JSON file says it is; empty where it says nothing, `None` for other files.
@@ -124,7 +132,7 @@ struct Gathered {
 }
 
 /// Puts results, truth, meshes and photos together. What cannot be scored is left out with a remark.
-pub fn gather(files: &StudyFiles) -> Result<ReportInput, GatherError> {
+pub fn gather(files: &ReportFiles) -> Result<ReportInput, GatherError> {
     if files.results.is_empty() {
         return Err(GatherError::NoResults);
     }
@@ -177,7 +185,7 @@ fn chosen<'a>(results: &'a [(String, Results)], remarks: &mut Vec<String>) -> Ve
 }
 
 impl Gathered {
-    fn take_samples(&mut self, files: &StudyFiles, truth: &Truth, title: &str) {
+    fn take_samples(&mut self, files: &ReportFiles, truth: &Truth, title: &str) {
         let mut meshes: BTreeMap<String, Result<Arc<Mesh>, String>> = BTreeMap::new();
         let several = files.truths.len() > 1;
         for sample in &truth.samples {
@@ -209,7 +217,7 @@ impl Gathered {
         })
     }
 
-    fn take_results(&mut self, files: &StudyFiles, file: &str, results: &Results) {
+    fn take_results(&mut self, files: &ReportFiles, file: &str, results: &Results) {
         let study = &results.study;
         let Some(truth) = files.truths.iter().find(|truth| truth.study == study.id) else {
             self.input.remarks.push(format!("{file}: left out, no truth of the study {} is here", study.id));
@@ -244,7 +252,7 @@ impl Gathered {
 
 /// A sample with its mesh; its label is still to be given.
 fn sample_of(
-    files: &StudyFiles,
+    files: &ReportFiles,
     sample: &TruthSample,
     mesh: Result<Arc<Mesh>, String>,
     set: usize,

@@ -9,7 +9,6 @@ mod job;
 mod measure;
 mod page;
 mod people;
-mod random;
 mod statistics;
 mod student;
 mod table;
@@ -19,7 +18,7 @@ mod whole;
 
 pub use analysis::{AgreementErrors, Analysis, PairErrors, ReportOptions, Rows, TrialErrors};
 pub use figure::{Anchor, Drawing, Figure, Shape, Stroke, Text, TupleJob, TuplePictures, figures, svg};
-pub use gather::{GatherError, StudyFiles, gather};
+pub use gather::{GatherError, ReportFiles, gather, mesh_of_study};
 pub use input::{
     Answered, ReportCondition, ReportInput, ReportParticipant, ReportSample, SampleView, SusAnswers,
     TLX_SCALES, TLX_TOP, TlxAnswers, Trial,

@@ -1,8 +1,8 @@
 //! What is said of many numbers: means and deviations, boxes, intervals, tests. All rules are those that the report states.
 
-use super::random::Random;
 use super::student::{student_cdf, student_quantile};
 use crate::metrics::quantile;
+use crate::study::Chance;
 
 /// How often a bootstrap draws.
 pub const RESAMPLES: usize = 10_000;
@@ -86,9 +86,9 @@ pub fn bootstrap_difference(first: &[f64], second: &[f64], seed: u64) -> Option<
     if first.len() < 2 || second.len() < 2 {
         return None;
     }
-    let mut random = Random::new(seed);
+    let mut chance = Chance::new(seed);
     let mut differences: Vec<f64> =
-        (0..RESAMPLES).map(|_| drawn_mean(first, &mut random) - drawn_mean(second, &mut random)).collect();
+        (0..RESAMPLES).map(|_| drawn_mean(first, &mut chance) - drawn_mean(second, &mut chance)).collect();
     differences.sort_by(f64::total_cmp);
     let interval = Interval { low: quantile(&differences, 0.025), high: quantile(&differences, 0.975) };
     Some((mean(first)? - mean(second)?, interval))
@@ -99,14 +99,14 @@ pub fn bootstrap_mean(values: &[f64], seed: u64) -> Option<Interval> {
     if values.len() < 2 {
         return None;
     }
-    let mut random = Random::new(seed);
-    let mut means: Vec<f64> = (0..RESAMPLES).map(|_| drawn_mean(values, &mut random)).collect();
+    let mut chance = Chance::new(seed);
+    let mut means: Vec<f64> = (0..RESAMPLES).map(|_| drawn_mean(values, &mut chance)).collect();
     means.sort_by(f64::total_cmp);
     Some(Interval { low: quantile(&means, 0.025), high: quantile(&means, 0.975) })
 }
 
-fn drawn_mean(values: &[f64], random: &mut Random) -> f64 {
-    let sum: f64 = (0..values.len()).map(|_| values[random.below(values.len())]).sum();
+fn drawn_mean(values: &[f64], chance: &mut Chance) -> f64 {
+    let sum: f64 = (0..values.len()).map(|_| values[chance.below(values.len())]).sum();
     sum / values.len() as f64
 }
 

@@ -36,6 +36,16 @@ pub enum Cell {
     Between(f64, f64),
 }
 
+/// What stands on everything that is made of a program's results.
+pub(super) const SIMULATED: &str = "Simulated participants";
+
+impl Table {
+    /// A table leaves its page, so it says itself what it is made of.
+    pub(super) fn mark_simulated(&mut self) {
+        self.note = format!("{SIMULATED}. {}", self.note);
+    }
+}
+
 impl Column {
     /// Of texts or counts.
     pub fn plain(name: &str) -> Self {

@@ -80,7 +80,12 @@ impl Report {
         let mut figures = figures(&analysis);
         let of_sets = (0..analysis.sets.len()).filter_map(|set| tuple_figure(&analysis, set, pictures));
         figures.extend(of_sets);
-        Self { tables: tables(&analysis), figures, analysis }
+        let mut tables = tables(&analysis);
+        if analysis.simulated {
+            figures.iter_mut().for_each(Figure::mark_simulated);
+            tables.iter_mut().for_each(Table::mark_simulated);
+        }
+        Self { analysis, tables, figures }
     }
 
     /// The page and beside it each table as CSV and LaTeX and each figure as SVG: paths and contents.

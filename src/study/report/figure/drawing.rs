@@ -79,6 +79,9 @@ pub(super) const BLACK: Rgb = Rgb([30, 30, 30]);
 pub(super) const GREY: Rgb = Rgb([110, 110, 110]);
 pub(super) const PALE: Rgb = Rgb([222, 222, 222]);
 
+/// Of what nobody may overlook.
+pub(super) const WARNING: Rgb = Rgb([213, 94, 0]);
+
 /// Apart for colour-blind eyes, and in grey. (Okabe and Ito, *Color Universal Design*, 2008.)
 pub(super) const COLORS: [Rgb; 7] = [
     Rgb([86, 180, 233]),

@@ -15,6 +15,7 @@ pub(super) use tuples::tuple_figure;
 pub use tuples::{TupleJob, TuplePictures};
 
 use super::Analysis;
+use super::table::SIMULATED;
 
 /// A drawing with what is said of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +25,16 @@ pub struct Figure {
     pub title: String,
     pub caption: String,
     pub drawing: Drawing,
+}
+
+impl Figure {
+    /// A figure leaves its page, so it says itself what it is made of.
+    pub(super) fn mark_simulated(&mut self) {
+        let Drawing { width, height, .. } = self.drawing;
+        let mark = Text::new([width - 8.0, height + 10.0], SIMULATED, 11.0, Anchor::End).bold();
+        self.drawing.text(Text { color: drawing::WARNING, ..mark });
+        self.drawing.height = height + 16.0;
+    }
 }
 
 /// How a box is to be read.

@@ -10,8 +10,8 @@ use crate::raster::{Mask, PixelRegion, RasterItem, rasterize};
 use crate::scene::{Rgb, object_color, reference_color};
 use crate::study::report::{Analysis, Measure, ReportProgress, ReportSample, Rows, TrialErrors};
 
-/// Of a picture on the page, in its own pixels: finer than it is printed.
-const PICTURE_WIDTH: u32 = 320;
+/// Of a picture on the page, in its own pixels: finer than it is printed. What has fewer in the photo keeps them.
+const MOST_WIDTH: u32 = 320;
 /// How much of the photo an object's colour covers.
 const COVER: f64 = 0.5;
 /// And where the silhouettes differ.
@@ -164,9 +164,9 @@ fn cut(
     region: PixelRegion,
     color: impl Fn(u32, u32) -> Option<(Rgb, f64)>,
 ) -> Option<Pixels> {
-    let width = PICTURE_WIDTH;
+    let width = region.width.clamp(1, MOST_WIDTH);
     let height = (u64::from(width) * u64::from(region.height)).div_ceil(u64::from(region.width.max(1)));
-    let height = u32::try_from(height).ok()?.clamp(1, 4 * PICTURE_WIDTH);
+    let height = u32::try_from(height).ok()?.clamp(1, 4 * MOST_WIDTH);
     let mut rgba = Vec::with_capacity(4 * width as usize * height as usize);
     for y in 0..height {
         for x in 0..width {
