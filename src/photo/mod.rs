@@ -6,6 +6,7 @@ mod encode;
 mod kind;
 mod mip;
 mod stored;
+mod stripped;
 mod thumbnail;
 
 pub use decode::{MAX_PIXELS, PhotoError, decode, read_header};
@@ -14,6 +15,7 @@ pub use encode::{png_gray8, png_gray16, png_rgba};
 pub use kind::{foreign_kind, is_picture};
 pub use mip::half_size;
 pub use stored::plain_extension;
+pub use stripped::{Stripped, without_metadata};
 pub use thumbnail::thumbnail;
 
 /// A decoded photo: RGBA rows from the top, 8 bits a channel, sRGB, upright (EXIF orientation applied).

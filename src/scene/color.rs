@@ -4,6 +4,21 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rgb(pub [u8; 3]);
 
+impl Rgb {
+    /// `#rrggbb`.
+    pub fn to_hex(self) -> String {
+        let [red, green, blue] = self.0;
+        format!("#{red:02x}{green:02x}{blue:02x}")
+    }
+
+    /// `None` for what is not `#rrggbb`.
+    pub fn from_hex(text: &str) -> Option<Self> {
+        let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
+        let [_, red, green, blue] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+        Some(Self([red, green, blue]))
+    }
+}
+
 /// Objects' colours in the order they are given out. The first is the paper's lime; the rest are apart from one another, from
 /// the references' magenta, and for colour-blind eyes (after Okabe and Ito).
 const OBJECT_COLORS: [Rgb; 7] = [

@@ -87,6 +87,13 @@ struct Waiting {
 }
 
 impl Session {
+    /// A scene that was made elsewhere, with nothing done to it yet; its first photo is shown.
+    pub fn with_scene(scene: Scene) -> Self {
+        let mut session = Self { scene, ..Self::default() };
+        session.keep_selection_valid();
+        session
+    }
+
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
