@@ -42,19 +42,19 @@ pub fn simulate(
     meshes: &BTreeMap<String, Arc<Mesh>>,
     simulation: Simulation,
 ) -> Result<Vec<Results>, StudyError> {
-    let scene = Stage { study, sha256, truth, meshes };
+    let scene = Setting { study, sha256, truth, meshes };
     (0..simulation.participants).map(|number| scene.participant(number, simulation)).collect()
 }
 
 /// What all participants have in common.
-struct Stage<'a> {
+struct Setting<'a> {
     study: &'a Study,
     sha256: &'a str,
     truth: &'a Truth,
     meshes: &'a BTreeMap<String, Arc<Mesh>>,
 }
 
-impl Stage<'_> {
+impl Setting<'_> {
     fn participant(&self, number: usize, simulation: Simulation) -> Result<Results, StudyError> {
         let id = format!("simulated-{:03}", number + 1);
         let plan = Plan::new(self.study, &id, &AskedFor::default())?;
