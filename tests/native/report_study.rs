@@ -160,7 +160,7 @@ fn trial_of(
     let truth = sample.pose.unwrap().to_pose().unwrap();
     // Every third pose of a symmetric object is its twin's.
     let twin = match sample.symmetries.discrete.first() {
-        Some(symmetry) if index % 3 == 0 => symmetry.to_pose().unwrap(),
+        Some(symmetry) if index.is_multiple_of(3) => symmetry.to_pose().unwrap(),
         _ => Pose::IDENTITY,
     };
     let turned = truth * twin * Pose::exp(noise.vector() * 0.15, DVec3::ZERO);

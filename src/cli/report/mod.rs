@@ -110,7 +110,7 @@ fn table_json(table: &Table) -> Value {
         Cell::Missing => Value::Null,
         Cell::Text(text) => json!(text),
         Cell::Count(count) => json!(count),
-        Cell::Number(number) => json!(number),
+        Cell::Number(number) | Cell::Chance(number) => json!(number),
         Cell::MeanAndDeviation(a, b) | Cell::Between(a, b) => json!([a, b]),
     };
     let rows: Vec<Vec<Value>> = table.rows.iter().map(|row| row.iter().map(cell).collect()).collect();

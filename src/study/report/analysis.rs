@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::measure::{Difference, Measure};
-use super::{ReportCondition, ReportParticipant, ReportSample};
+use super::{Contrast, ReportCondition, ReportParticipant, ReportSample};
 
 /// The part of the results that the paper keeps.
 const KEPT_PART: [usize; 2] = [9, 10];
@@ -25,6 +25,8 @@ pub struct Analysis {
     pub trials: Vec<TrialErrors>,
     pub pairs: Vec<PairErrors>,
     pub agreement: Vec<AgreementErrors>,
+    /// Empty where there is only one condition.
+    pub contrasts: Vec<Contrast>,
     pub options: ReportOptions,
 }
 

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::analysis::{AgreementErrors, Analysis, PairErrors, ReportOptions, TrialErrors};
+use super::contrast::{contrast, contrast_tasks};
 use super::measure::Model;
-use super::{ReportInput, ReportParticipant, Trial};
+use super::{Quantity, ReportInput, ReportParticipant, Trial};
 
 /// Each participant is compared with so many others after it at the most (the last ones go on with the first), so that all
 /// count the same and the work does not grow with the square of their number. Up to 21 participants these are all pairs.
@@ -37,6 +38,7 @@ enum Stage {
     Trials,
     Pairs,
     Agreement,
+    Contrasts,
 }
 
 /// One comparison; numbers are indices of participants and of their trials.
@@ -46,6 +48,7 @@ enum Task {
     Trial { participant: usize, trial: usize },
     Pair { participant: usize, trials: [usize; 2] },
     Agreement { participants: [usize; 2], trials: [usize; 2] },
+    Contrast { conditions: [usize; 2], quantity: Quantity },
 }
 
 impl AnalysisJob {
@@ -72,6 +75,7 @@ impl AnalysisJob {
             trials: Vec::new(),
             pairs: Vec::new(),
             agreement: Vec::new(),
+            contrasts: Vec::new(),
             options,
         };
         Self { analysis, models: Vec::new(), stage: Stage::Models, tasks, done: 0, expected }
@@ -123,6 +127,10 @@ impl AnalysisJob {
                 let row = self.agreement_errors(participants, trials);
                 self.analysis.agreement.extend(row);
             }
+            Task::Contrast { conditions, quantity } => {
+                let row = contrast(&self.analysis, conditions, quantity);
+                self.analysis.contrasts.extend(row);
+            }
         }
     }
 
@@ -136,7 +144,12 @@ impl AnalysisJob {
                 (Stage::Pairs, pair_tasks(&self.analysis.participants))
             }
             Stage::Pairs => (Stage::Agreement, agreement_tasks(&self.analysis)),
-            Stage::Agreement => return false,
+            Stage::Agreement => {
+                let all = contrast_tasks(self.analysis.conditions.len());
+                let task = |(conditions, quantity)| Task::Contrast { conditions, quantity };
+                (Stage::Contrasts, all.map(task).collect())
+            }
+            Stage::Contrasts => return false,
         };
         self.tasks.reverse();
         true

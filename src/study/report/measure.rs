@@ -26,7 +26,7 @@ pub enum Measure {
 }
 
 /// A number for each of [`Measure::ALL`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Difference([f64; Measure::ALL.len()]);
 
 impl Measure {

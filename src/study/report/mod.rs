@@ -2,6 +2,7 @@
 
 mod analysis;
 mod base64;
+mod contrast;
 mod figure;
 mod gather;
 mod input;
@@ -9,6 +10,7 @@ mod job;
 mod measure;
 mod page;
 mod people;
+mod quantity;
 mod statistics;
 mod student;
 mod table;
@@ -17,6 +19,7 @@ mod tables;
 mod whole;
 
 pub use analysis::{AgreementErrors, Analysis, PairErrors, ReportOptions, Rows, TrialErrors};
+pub use contrast::Contrast;
 pub use figure::{Anchor, Drawing, Figure, Shape, Stroke, Text, TupleJob, TuplePictures, figures, svg};
 pub use gather::{GatherError, ReportFiles, gather, mesh_of_study};
 pub use input::{
@@ -25,6 +28,7 @@ pub use input::{
 };
 pub use job::{AnalysisJob, PARTNERS, ReportProgress};
 pub use measure::{Difference, Measure};
+pub use quantity::Quantity;
 pub use statistics::{BoxStatistics, Equivalence, Interval, RESAMPLES, Spread};
 pub use table::{Cell, Column, Table};
 pub use table_text::{csv, latex};

@@ -30,6 +30,8 @@ pub enum Cell {
     Text(String),
     Count(usize),
     Number(f64),
+    /// A test's p.
+    Chance(f64),
     /// Two columns of a CSV.
     MeanAndDeviation(f64, f64),
     /// Two columns of a CSV.
@@ -66,6 +68,9 @@ impl Column {
     }
 }
 
+/// Below it, a p value is not printed digit by digit.
+const LEAST_CHANCE: f64 = 0.0001;
+
 impl Cell {
     pub fn text(text: &str) -> Self {
         Self::Text(text.to_owned())
@@ -82,6 +87,8 @@ impl Cell {
             Self::Text(text) => text.clone(),
             Self::Count(count) => count.to_string(),
             Self::Number(number) => fixed(*number, decimals),
+            Self::Chance(p) if *p < LEAST_CHANCE => format!("< {LEAST_CHANCE}"),
+            Self::Chance(p) => fixed(*p, decimals),
             Self::MeanAndDeviation(mean, deviation) => {
                 format!("{}{plus_minus}{}", fixed(*mean, decimals), fixed(*deviation, decimals))
             }
@@ -110,6 +117,7 @@ mod tests {
         assert_eq!(print(&Cell::Between(-0.001, 1.0)), "[0.00, 1.00]");
         assert_eq!(print(&Cell::number(Some(f64::NAN))), "–");
         assert_eq!(print(&Cell::Number(-1.5)), "-1.50");
+        assert_eq!([print(&Cell::Chance(1e-9)), print(&Cell::Chance(0.25))], ["< 0.0001", "0.25"]);
         assert_eq!(Column::number("rotation", "deg", 2).heading(), "rotation (°)");
     }
 }

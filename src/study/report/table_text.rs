@@ -45,7 +45,7 @@ fn csv_cell(cell: &Cell, is_double: bool) -> String {
         Cell::Missing => String::new(),
         Cell::Text(text) => quoted(text),
         Cell::Count(count) => count.to_string(),
-        Cell::Number(number) => number.to_string(),
+        Cell::Number(number) | Cell::Chance(number) => number.to_string(),
         Cell::MeanAndDeviation(a, b) | Cell::Between(a, b) => format!("{a},{b}"),
     }
 }
@@ -82,8 +82,9 @@ pub fn latex(table: &Table) -> String {
             Cell::Text(text) => latex_text(text),
             cell => {
                 let number = cell.printed(column.decimals, " \\pm ", "--");
-                let is_formula = matches!(cell, Cell::MeanAndDeviation(..) | Cell::Between(..))
-                    || number.starts_with('-') && *cell != Cell::Missing;
+                let is_formula =
+                    matches!(cell, Cell::MeanAndDeviation(..) | Cell::Between(..) | Cell::Chance(..))
+                        || number.starts_with('-') && *cell != Cell::Missing;
                 if is_formula { format!("${number}$") } else { number }
             }
         });
@@ -142,7 +143,7 @@ pub fn html(table: &Table, number: usize) -> String {
         }
         text += "</tr>\n";
     }
-    text + &format!("</tbody></table></div>\n<p class=\"note\">{}</p>\n</figure>\n", html_text(&table.note))
+    text + &format!("</tbody></table></div>\n<p class=\"note\">{}.</p>\n</figure>\n", html_text(&table.note))
 }
 
 /// Text between tags or in a quoted attribute.

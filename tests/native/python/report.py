@@ -302,9 +302,9 @@ for name in sets:
         margin, unit = (MARGIN_PERCENT, "% of diameter") if at < 3 else (MARGIN_DEG, "°")
         n, mean, interval, p = tested(offsets[:, at], margin, True)
         tables["equivalence"].append([name, title, unit, n, mean, interval, f"±{margin:g}", p, "yes" if p < 0.05 else "no"])
-    shares = [np.mean([row["share"] for row in own(person)]) for person in members(name)]
+    shares = [np.mean([100 * row["ad"] / row["sample"].diameter for row in own(person)]) for person in members(name)]
     n, mean, interval, p = tested(shares, MARGIN_PERCENT, False)
-    tables["equivalence"].append([name, "ADD, one-sided", "% of diameter", n, mean, interval, f"below {MARGIN_PERCENT:g}", p, "yes" if p < 0.05 else "no"])
+    tables["equivalence"].append([name, "AD, one-sided", "% of diameter", n, mean, interval, f"below {MARGIN_PERCENT:g}", p, "yes" if p < 0.05 else "no"])
 
 # Questionnaires
 

@@ -217,7 +217,7 @@ fn legend_places(legend: &[(String, Rgb)]) -> Vec<[f64; 2]> {
     let (mut x, mut y) = (LEFT, TOP);
     let mut places = Vec::new();
     for (name, _) in legend {
-        let width = text_width(name, LABEL_SIZE) + 28.0;
+        let width = text_width(name, LABEL_SIZE) + 24.0;
         if x + width > WIDTH - RIGHT && x > LEFT {
             (x, y) = (LEFT, y + 16.0);
         }

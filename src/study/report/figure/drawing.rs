@@ -100,7 +100,7 @@ pub(super) fn color(index: usize) -> Rgb {
 
 /// About how wide a text is: digits and small letters of a sans-serif take half their size and a little.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
-    text.chars().count() as f64 * size * 0.55
+    text.chars().count() as f64 * size * 0.53
 }
 
 impl Stroke {

@@ -4,8 +4,7 @@ use super::axis::Axis;
 use super::chart::WIDTH;
 use super::drawing::{Anchor, BLACK, Drawing, GREY, PALE, Shape, Stroke, Text, color};
 use super::{Figure, figure};
-use crate::study::report::tables::{Contrast, Quantity, contrasts};
-use crate::study::report::{Analysis, RESAMPLES};
+use crate::study::report::{Analysis, Contrast, Quantity, RESAMPLES};
 
 const LEFT: f64 = 250.0;
 const RIGHT: f64 = 24.0;
@@ -14,17 +13,17 @@ const SIZE: f64 = 11.0;
 
 /// `None` where there is only one condition.
 pub(super) fn differences(analysis: &Analysis) -> Option<Figure> {
-    let all = contrasts(analysis);
     let panels: Vec<Drawing> = Quantity::ALL
         .into_iter()
         .filter_map(|quantity| {
-            let of: Vec<&Contrast> = all.iter().filter(|contrast| contrast.quantity == quantity).collect();
+            let of: Vec<&Contrast> =
+                analysis.contrasts.iter().filter(|contrast| contrast.quantity == quantity).collect();
             (!of.is_empty()).then(|| panel(analysis, quantity, &of))
         })
         .collect();
     let caption = format!(
         "Differences of the persons' means between conditions, first minus second, with 95 % percentile bootstrap intervals \
-         ({RESAMPLES} draws of persons, seed {}). An interval that leaves out zero is a difference.",
+         ({RESAMPLES} draws of persons, seed {}). Where an interval leaves out zero, the conditions differ.",
         analysis.options.seed
     );
     (!panels.is_empty()).then(|| {

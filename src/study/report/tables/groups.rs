@@ -2,59 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::super::statistics::{Interval, bootstrap_difference, bootstrap_mean, mean};
-use super::people::{ConditionOrAll, Quantity};
+use super::super::quantity::{ConditionOrAll, Quantity};
 use super::{Analysis, Cell, Column, Table, spread_cell, table};
 
 /// A question whose answers are all different (a free text) divides nobody.
 const MOST_LEVELS: usize = 8;
-
-/// The difference of two conditions in one quantity.
-#[derive(Debug, Clone, PartialEq)]
-pub(in super::super) struct Contrast {
-    pub conditions: [usize; 2],
-    pub quantity: Quantity,
-    /// First minus second.
-    pub difference: f64,
-    /// 95 %, by the bootstrap.
-    pub interval: Interval,
-    /// Persons in each of them.
-    pub counts: [usize; 2],
-    /// The same persons worked under both, and differences are theirs.
-    pub is_paired: bool,
-}
-
-/// All pairs of conditions in all quantities. Where every person worked under both, persons' own differences are averaged
-/// and drawn; otherwise persons are drawn within each condition.
-pub(in super::super) fn contrasts(analysis: &Analysis) -> Vec<Contrast> {
-    let count = analysis.conditions.len();
-    let pairs = (0..count).flat_map(|first| (first + 1..count).map(move |second| [first, second]));
-    pairs
-        .flat_map(|pair| {
-            Quantity::ALL.into_iter().filter_map(move |quantity| contrast(analysis, pair, quantity))
-        })
-        .collect()
-}
-
-fn contrast(analysis: &Analysis, conditions: [usize; 2], quantity: Quantity) -> Option<Contrast> {
-    let values = conditions.map(|condition| -> Vec<(usize, f64)> {
-        let of = |person| Some((person, quantity.of(analysis, person, Some(condition))?));
-        (0..analysis.participants.len()).filter_map(of).collect()
-    });
-    let [first, second] = &values;
-    let is_paired = !first.is_empty()
-        && first.iter().map(|(person, _)| person).eq(second.iter().map(|(person, _)| person));
-    let plain = |values: &[(usize, f64)]| values.iter().map(|(_, value)| *value).collect::<Vec<_>>();
-    let seed = analysis.options.seed;
-    let (difference, interval) = if is_paired {
-        let own: Vec<f64> = first.iter().zip(second).map(|(a, b)| a.1 - b.1).collect();
-        (mean(&own)?, bootstrap_mean(&own, seed)?)
-    } else {
-        bootstrap_difference(&plain(first), &plain(second), seed)?
-    };
-    let counts = [first.len(), second.len()];
-    Some(Contrast { conditions, quantity, difference, interval, counts, is_paired })
-}
 
 fn quantity_columns() -> impl Iterator<Item = Column> {
     Quantity::ALL.into_iter().map(|quantity| Column::number(quantity.name(), quantity.unit(), 2))
@@ -91,8 +43,9 @@ pub(super) fn conditions(analysis: &Analysis) -> Table {
 
 pub(super) fn condition_differences(analysis: &Analysis) -> Table {
     let title_of = |at: usize| analysis.conditions.get(at).map_or("", |condition| condition.title.as_str());
-    let rows = contrasts(analysis)
-        .into_iter()
+    let rows = analysis
+        .contrasts
+        .iter()
         .map(|contrast| {
             let [first, second] = contrast.conditions;
             let [n, m] = contrast.counts;

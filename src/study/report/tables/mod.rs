@@ -3,7 +3,6 @@
 mod errors;
 mod groups;
 mod numbers;
-mod people;
 mod questionnaires;
 mod tests_of_truth;
 mod times;
@@ -11,9 +10,6 @@ mod times;
 use super::statistics::Spread;
 use super::table::{Cell, Column, Table};
 use super::{Analysis, Difference, Measure, Rows};
-
-pub(super) use groups::{Contrast, contrasts};
-pub(super) use people::Quantity;
 
 /// All tables, in the order in which the page has them. Those that would be empty are left out.
 pub fn tables(analysis: &Analysis) -> Vec<Table> {

@@ -40,7 +40,7 @@ pub(super) fn equivalence(analysis: &Analysis) -> Table {
             .collect();
         let margin = options.margin_percent;
         rows.extend(Equivalence::below(&shares, margin).map(|found| {
-            line(set_name(analysis, set), "ADD, one-sided", "%", &format!("below {margin}"), &found)
+            line(set_name(analysis, set), "AD, one-sided", "%", &format!("below {margin}"), &found)
         }));
     }
     let mut columns = ["set", "quantity", "unit", "persons"].map(Column::plain).to_vec();
@@ -51,7 +51,7 @@ pub(super) fn equivalence(analysis: &Analysis) -> Table {
          mean's 90 % interval lies within the margin. Offsets are those of the middle of the object's box, in the camera's axes \
          and in per cent of the object's diameter (margin {} %: ADD under a tenth of the diameter is the field's \"correct\"); \
          rotations are the components of the rotation vector from the truth (margin {}°), at the nearest of the object's \
-         symmetries. ADD has no sign and is tested against the margin from above alone",
+         symmetries. AD (ADI for an object with symmetries, else ADD) has no sign and is tested from below the margin alone",
         Equivalence::LEVEL,
         options.margin_percent,
         options.margin_deg
@@ -68,7 +68,7 @@ fn line(set: &str, name: &str, unit: &str, margin: &str, found: &Equivalence) ->
         Cell::Number(found.mean),
         Cell::Between(found.interval.low, found.interval.high),
         Cell::text(margin),
-        Cell::Number(found.p),
+        Cell::Chance(found.p),
         Cell::text(if found.is_equivalent() { "yes" } else { "no" }),
     ]
 }
@@ -99,11 +99,15 @@ fn offsets(analysis: &Analysis, sample: usize, pose: &Pose) -> Option<[f64; 6]> 
     Some([x, y, z, rx, ry, rz])
 }
 
-/// The mean ADD of a person's trials of a set, in per cent of the diameter.
+/// The mean AD of a person's trials of a set, in per cent of the diameter.
 fn mean_share(analysis: &Analysis, person: usize, set: usize) -> Option<f64> {
     let own = analysis
         .trials
         .iter()
         .filter(|row| row.participant == person && analysis.set_of(row.sample) == Some(set));
-    mean(&own.map(|row| row.errors.get(Measure::AddShare)).collect::<Vec<_>>())
+    let share = |row: &super::super::TrialErrors| {
+        let diameter_mm = analysis.diameters_mm.get(row.sample).filter(|diameter| **diameter > 0.0)?;
+        Some(100.0 * row.errors.get(Measure::Ad) / diameter_mm)
+    };
+    mean(&own.filter_map(share).collect::<Vec<_>>())
 }

@@ -1,11 +1,11 @@
 //! One number per person: what persons, conditions and groups of persons are compared by.
 
-use super::super::statistics::mean;
-use super::{Analysis, Measure};
+use super::statistics::mean;
+use super::{Analysis, Measure, PairErrors};
 
 /// A person's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) enum Quantity {
+pub enum Quantity {
     /// The mean time of a trial.
     Seconds,
     /// The mean of the best trials' errors.
@@ -62,7 +62,7 @@ impl Quantity {
                 mean(&best.map(|row| row.errors.get(measure)).collect::<Vec<_>>())
             }
             Self::Repeats => {
-                let own = |row: &&super::super::PairErrors| row.participant == person && asked(row.condition);
+                let own = |row: &&PairErrors| row.participant == person && asked(row.condition);
                 let pairs = analysis.pairs.iter().filter(own);
                 mean(&pairs.map(|row| row.differences.get(Measure::Add)).collect::<Vec<_>>())
             }
