@@ -6,7 +6,7 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 
-use crate::app::{PinPose, Start, StartWith};
+use crate::app::{PinPose, Start, StartWith, StudyLink};
 use crate::platform::{self, PageAnswer, PageCall, PageCalls, Perf};
 
 /// Starts the program on a canvas; resolves when its first frame is drawn.
@@ -34,10 +34,12 @@ pub async fn start(canvas: HtmlCanvasElement, options: JsValue) -> Result<(), Js
             return Ok(Box::new(Bare { calls, start_ms: 0.0 }));
         }
         let has = |parameter| platform::page_parameter(parameter).is_some();
-        let with = match (has("example"), has("empty")) {
-            (true, _) => StartWith::Example,
-            (false, true) => StartWith::Nothing,
-            (false, false) => StartWith::LastOpen,
+        let study = platform::page_parameter("study").filter(|study| !study.is_empty());
+        let with = match (study, has("example"), has("empty")) {
+            (Some(study), ..) => StartWith::Study(StudyLink { study }),
+            (None, true, _) => StartWith::Example,
+            (None, false, true) => StartWith::Nothing,
+            (None, false, false) => StartWith::LastOpen,
         };
         let start = Start { calls, storage: platform::default_storage(), with };
         Ok(Box::new(PinPose::new(creation, start)))

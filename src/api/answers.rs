@@ -34,6 +34,7 @@ fn state_json(state: &PageState) -> Result<Value, JsValue> {
     value["saved"] = json!(state.saved);
     value["question"] = json!(state.question);
     value["notices"] = json!(state.notices);
+    value["study"] = json!(state.study);
     Ok(value)
 }
 

@@ -75,6 +75,10 @@ impl PinPose {
     }
 
     fn call_load(&mut self, files: Vec<FileBytes>, poses_as: Option<String>, reply: PageReply) {
+        if self.is_in_study() {
+            reply.send(Err("files cannot be loaded in a study".to_owned())).ok();
+            return;
+        }
         let poses_as = match poses_as.as_deref() {
             None => None,
             Some("annotations") => Some(PosesAs::Annotations),
@@ -90,6 +94,9 @@ impl PinPose {
     }
 
     fn call_set_pose(&mut self, photo: u32, object: u32, rows: &[[f64; 4]; 4]) -> Answer {
+        if self.is_in_study() {
+            return Err("setPose is not part of a study".to_owned());
+        }
         let (camera_from_object, _) = Pose::from_rows(rows).map_err(|error| error.to_string())?;
         let (photo, object) = (PhotoId(photo), ObjectId(object));
         self.try_apply(Command::SetPose { photo, object, camera_from_object, source: PoseSource::Manual })?;
@@ -190,6 +197,7 @@ impl PinPose {
             saved: self.autosave.state(&self.session) == Saving::Saved,
             question: question.or_else(|| self.datasets.asks().then_some("data_set")),
             notices: self.ui_state.toasts.texts().map(str::to_owned).collect(),
+            study: self.study.as_ref().map(|study| study.screen_name()),
         }
     }
 

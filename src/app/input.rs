@@ -40,14 +40,14 @@ impl PinPose {
     }
 
     /// The overlay's key works as long as it is down; what is hidden already it shows.
-    fn hide_overlay_by_hold(&mut self) {
+    pub(super) fn hide_overlay_by_hold(&mut self) {
         if self.layers_before_hold.is_none() {
             self.layers_before_hold = Some(self.session.look().layers);
             self.apply(Command::Run(CommandId::ToggleOverlay));
         }
     }
 
-    fn show_overlay_after_hold(&mut self, ctx: &egui::Context) {
+    pub(super) fn show_overlay_after_hold(&mut self, ctx: &egui::Context) {
         let released = ctx
             .input(|input| is_released(input, CommandId::ToggleOverlay, &self.ui_state.preferences.keymap));
         if let Some(layers) = self.layers_before_hold.take_if(|_| released) {
@@ -132,7 +132,7 @@ fn pane_at(ctx: &egui::Context, places: &Places, position: egui::Pos2) -> Option
 }
 
 /// What was pasted while no text field had the focus.
-fn pasted_texts(input: &mut egui::InputState) -> Vec<String> {
+pub(super) fn pasted_texts(input: &mut egui::InputState) -> Vec<String> {
     let mut texts = Vec::new();
     input.events.retain(|event| match event {
         Event::Paste(text) => {

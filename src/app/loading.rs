@@ -47,6 +47,9 @@ pub struct Loading {
     depth_jobs: HashMap<u64, Sha256>,
     finished_depths: Vec<(Sha256, Option<Arc<DepthPixels>>)>,
     solver_mesh_jobs: HashMap<u64, Sha256>,
+    /// Files of a study by their paths in it.
+    study_jobs: HashMap<u64, String>,
+    finished_for_study: Vec<side_jobs::StudyFile>,
     finished_solver_meshes: Vec<(Sha256, Option<Arc<Mesh>>)>,
     /// Zips that are no workspaces.
     archives: Vec<FoundArchive>,
@@ -131,6 +134,8 @@ impl Loading {
             depth_jobs: HashMap::new(),
             finished_depths: Vec::new(),
             solver_mesh_jobs: HashMap::new(),
+            study_jobs: HashMap::new(),
+            finished_for_study: Vec::new(),
             finished_solver_meshes: Vec::new(),
             archives: Vec::new(),
         }

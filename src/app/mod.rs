@@ -19,6 +19,7 @@ mod photo_cache;
 mod pictures;
 mod scenes;
 mod snapping;
+mod study;
 mod thumbnails;
 mod widgets;
 
@@ -33,6 +34,7 @@ use crate::ui::{self, SharedRenderer, UiState};
 
 pub use jobs::run_job;
 pub use scenes::StartWith;
+pub use study::Link as StudyLink;
 
 /// The whole program.
 pub struct PinPose {
@@ -58,6 +60,8 @@ pub struct PinPose {
     /// While the key that hides the overlay is down: what was shown before.
     layers_before_hold: Option<crate::scene::Layers>,
     events: events::Events,
+    /// Somebody takes part in a study: nothing else of the program is there then.
+    study: Option<Box<study::Participating>>,
 }
 
 /// What the program starts with.
@@ -105,6 +109,7 @@ impl PinPose {
             performance: performance::Performance::default(),
             layers_before_hold: None,
             events: events::Events::default(),
+            study: None,
         };
         app.start_with(start.with);
         app
@@ -118,6 +123,9 @@ impl PinPose {
     }
 
     fn try_apply(&mut self, command: Command) -> Result<(), String> {
+        if self.is_in_study() {
+            return self.apply_in_study(command, platform::now_ms());
+        }
         if matches!(command, Command::CancelGesture | Command::Run(crate::session::CommandId::Cancel)) {
             self.hands.cancel();
         }
@@ -140,6 +148,9 @@ impl PinPose {
 impl eframe::App for PinPose {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
         self.performance.begin_frame(frame.info().cpu_usage);
+        if self.is_in_study() {
+            return self.study_logic(ctx);
+        }
         self.tick_scenes();
         self.take_loaded();
         self.take_dropped(ctx);
@@ -158,6 +169,9 @@ impl eframe::App for PinPose {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if self.is_in_study() {
+            return self.study_ui(ui);
+        }
         let pixels = self.session.photo().and_then(|photo| self.photos.get(photo.asset.sha256));
         let depth = self.session.photo().map(|photo| photo.id).and_then(|photo| self.depth_of(photo));
         let open_scene = self.autosave.id();
@@ -222,7 +236,9 @@ impl eframe::App for PinPose {
     }
 
     fn on_exit(&mut self) {
-        self.autosave.save_now(&self.session, platform::now_ms());
+        if !self.is_in_study() {
+            self.autosave.save_now(&self.session, platform::now_ms());
+        }
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

@@ -70,10 +70,12 @@ enum Arrived {
 }
 
 /// What the program opens first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StartWith {
     LastOpen,
     Example,
+    /// Somebody takes part in a study.
+    Study(super::StudyLink),
     Nothing,
 }
 
@@ -94,6 +96,10 @@ impl Scenes {
     /// The scenes that are stored, the one that was changed last first.
     pub fn list(&self) -> &[SceneSummary] {
         &self.list
+    }
+
+    pub fn storage(&self) -> Rc<dyn Storage> {
+        self.storage.clone()
     }
 
     pub fn usage(&self) -> Option<StorageUse> {
@@ -159,6 +165,7 @@ impl PinPose {
         self.scenes.refresh();
         match start {
             StartWith::Nothing => {}
+            StartWith::Study(link) => self.start_study(link),
             StartWith::Example => {
                 self.autosave.mark_trial();
                 self.claim_scene();
@@ -414,7 +421,11 @@ impl PinPose {
                 self.scene_opened(false);
             }
             Arrived::Remains(title, remains) => self.download_remains(&title, remains),
-            Arrived::Listed(list) => self.scenes.list = list,
+            Arrived::Listed(mut list) => {
+                // Participations are kept beside scenes, and are none.
+                list.retain(|summary| !super::study::is_kept_id(&summary.id));
+                self.scenes.list = list;
+            }
             Arrived::Usage(usage) => self.scenes.usage = Some(usage),
             Arrived::Claimed(id, false) if id == self.autosave.id() => self.borrow_scene(),
             Arrived::Claimed(..) => {}

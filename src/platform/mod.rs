@@ -5,6 +5,7 @@
 
 mod file_tree;
 mod memory;
+mod network;
 mod page_api;
 mod preferences;
 mod storage;
@@ -17,12 +18,13 @@ mod web;
 
 pub use file_tree::{FileFuture, FileTree, FolderEvent, GoOn};
 pub use memory::MemoryStorage;
+pub use network::{BrowserFacts, NetworkFuture, Request};
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
     Background, ExportFolder, FolderStorage, GrowingDownload, default_storage, download, fetch_example,
     memory_bytes, navigation_ms, new_scene_id, now_ms, open_folder, page_parameter, page_version, pick_files,
     pick_folder, png_of_foreign, reload, report_crash, send_event, spawn, update_offer, wasm_bytes,
-    watch_dropped_folders, when_left,
+    watch_dropped_folders, when_left, browser_facts, fetch, go_to, send_request, watch_hidden,
 };
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
@@ -38,7 +40,7 @@ pub use web::{
     Background, ExportFolder, GrowingDownload, default_storage, download, fetch_example, install_panic_hook,
     memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, pick_folder,
     png_of_foreign, reload, report_crash, send_event, spawn, update_offer, wasm_bytes, watch_dropped_folders,
-    watch_for_updates, when_left,
+    watch_for_updates, when_left, browser_facts, fetch, go_to, send_request, watch_hidden,
 };
 
 /// A file that the user picked or dropped.
@@ -57,3 +59,6 @@ pub struct UpdateOffer;
 
 /// Where the example is, relative to the page.
 const EXAMPLE_PATH: &str = "demo/example.zip";
+
+/// Where the example study is, relative to the page.
+pub const EXAMPLE_STUDY_PATH: &str = "demo/study.zip";

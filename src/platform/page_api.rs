@@ -91,6 +91,8 @@ pub struct PageState {
     pub saved: bool,
     pub question: Option<&'static str>,
     pub notices: Vec<String>,
+    /// Of somebody who takes part in a study: which screen is shown.
+    pub study: Option<&'static str>,
 }
 
 /// A surface point under a place of the page.

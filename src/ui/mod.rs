@@ -15,6 +15,7 @@ mod scenes_dialog;
 mod shortcuts;
 mod shortcuts_sheet;
 mod strip;
+pub mod study;
 mod theme;
 mod thumbnails;
 mod toasts;
@@ -63,6 +64,8 @@ pub struct UiState {
     pub viewport: Option<ViewportPlace>,
     pub scene_viewport: Option<ViewportPlace>,
     split: viewport::SplitState,
+    /// Of the study that somebody takes part in.
+    pub study: study::State,
 }
 
 /// Windows that come up over the rest, one at a time.

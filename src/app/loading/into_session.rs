@@ -51,6 +51,18 @@ impl PinPose {
         true
     }
 
+    /// Takes the pixels that are to be shown; whatever else is loaded stays out of a study.
+    pub(in crate::app) fn take_decoded(&mut self) {
+        let (decoded, complete) = self.loading.poll(false);
+        for (sha256, pixels) in decoded {
+            self.photos.insert(sha256, pixels);
+        }
+        for reply in complete.into_iter().filter_map(|load| load.reply) {
+            // Who asked may be gone.
+            reply.send(Err("files cannot be loaded in a study".to_owned())).ok();
+        }
+    }
+
     /// Gives complete loads to the session.
     pub(in crate::app) fn take_loaded(&mut self) {
         let (decoded, complete) = self.loading.poll(self.scenes.is_switching());

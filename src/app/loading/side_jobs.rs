@@ -9,7 +9,20 @@ use crate::mesh::Mesh;
 use crate::photo::{DepthPixels, Pixels};
 use crate::scene::{CompanionFile, MeshAsset, PhotoAsset, Sha256};
 
+/// A study's file by its path in it, and what was made of it.
+pub type StudyFile = (String, Result<Done, String>);
+
 impl Loading {
+    /// Reads a mesh of a study, or the header of a photo.
+    pub fn read_for_study(&mut self, kind: JobKind, path: &str, file: NamedFile, companions: &[NamedFile]) {
+        let job = self.jobs.submit(kind, file, companions, Urgency::InTurn);
+        self.study_jobs.insert(job, path.to_owned());
+    }
+
+    pub fn take_for_study(&mut self) -> Vec<StudyFile> {
+        std::mem::take(&mut self.finished_for_study)
+    }
+
     /// Decodes a photo of the scene that is to be shown.
     pub fn decode(&mut self, photo: &PhotoAsset) {
         self.jobs.submit(JobKind::Photo, file_of(photo), &[], Urgency::Next);
@@ -72,6 +85,8 @@ impl Loading {
         } else if let Some(sha256) = self.solver_mesh_jobs.remove(&job) {
             let made = if let Ok(Done::SolverMesh(mesh)) = done { Some(mesh) } else { None };
             self.finished_solver_meshes.push((sha256, made));
+        } else if let Some(path) = self.study_jobs.remove(&job) {
+            self.finished_for_study.push((path, done));
         } else {
             return Some(done);
         }

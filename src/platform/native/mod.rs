@@ -4,6 +4,7 @@ mod background;
 mod export;
 mod file_tree;
 mod folder;
+mod network;
 mod preferences;
 
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ pub use background::Background;
 pub use export::{ExportFolder, GrowingDownload};
 pub use file_tree::{open_folder, pick_folder, watch_dropped_folders};
 pub use folder::FolderStorage;
+pub use network::{browser_facts, fetch, go_to, send_request, watch_hidden};
 pub use preferences::{read_stored_preference, write_stored_preference};
 
 /// Milliseconds since 1970, UTC.

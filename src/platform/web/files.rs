@@ -81,20 +81,8 @@ pub(super) fn offer_blob(file_name: &str, blob: &web_sys::Blob) -> Result<(), Js
 /// Fetches the example scene, which is no part of the page's first load.
 pub fn fetch_example(on_done: impl FnOnce(Result<FileBytes, String>) + 'static) {
     wasm_bindgen_futures::spawn_local(async move {
-        let fetched = fetch(EXAMPLE_PATH).await;
+        let fetched = super::fetch(EXAMPLE_PATH).await;
         let name = EXAMPLE_PATH.rsplit('/').next().unwrap_or(EXAMPLE_PATH).to_owned();
         on_done(fetched.map(|bytes| FileBytes { name, bytes }));
     });
-}
-
-async fn fetch(url: &str) -> Result<Vec<u8>, String> {
-    let failed = |error: JsValue| format!("{url} cannot be fetched: {}", describe(&error));
-    let window = web_sys::window().ok_or("the page is gone")?;
-    let response = JsFuture::from(window.fetch_with_str(url)).await.map_err(failed)?;
-    let response: web_sys::Response = response.dyn_into().map_err(failed)?;
-    if !response.ok() {
-        return Err(format!("{url} cannot be fetched: the server answered {}", response.status()));
-    }
-    let buffer = JsFuture::from(response.array_buffer().map_err(failed)?).await.map_err(failed)?;
-    Ok(Uint8Array::new(&buffer).to_vec())
 }

@@ -6,6 +6,7 @@ mod export;
 mod file_tree;
 mod files;
 mod indexed_db;
+mod network;
 mod pictures;
 
 use std::cell::Cell;
@@ -20,6 +21,7 @@ pub use browser_storage::{read_stored_preference, write_stored_preference};
 pub use export::{ExportFolder, GrowingDownload};
 pub use file_tree::{pick_folder, watch_dropped_folders};
 pub use files::{download, fetch_example, pick_files};
+pub use network::{browser_facts, fetch, go_to, send_request, watch_hidden};
 pub use pictures::png_of_foreign;
 
 /// What the boot script offers; see `web/page/boot.js`.

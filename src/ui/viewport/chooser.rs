@@ -6,8 +6,19 @@ use crate::scene::{Look, OverlayMode};
 use crate::session::{Arrangement, Command, CommandId, Session};
 use crate::ui::theme;
 
-pub fn draw(ui: &Ui, whole: Rect, session: &Session, commands: &mut Vec<Command>) {
-    if session.photo().is_none() {
+/// Which of the two are offered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Choices {
+    pub views: bool,
+    pub modes: bool,
+}
+
+impl Choices {
+    pub const ALL: Self = Self { views: true, modes: true };
+}
+
+pub fn draw(ui: &Ui, whole: Rect, session: &Session, choices: Choices, commands: &mut Vec<Command>) {
+    if session.photo().is_none() || !(choices.views || choices.modes) {
         return;
     }
     Area::new(Id::unique("view chooser"))
@@ -19,9 +30,15 @@ pub fn draw(ui: &Ui, whole: Rect, session: &Session, commands: &mut Vec<Command>
             theme::overlay_frame().show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
-                    arrangement(ui, session, commands);
-                    ui.add_space(6.0);
-                    overlay_mode(ui, session, commands);
+                    if choices.views {
+                        arrangement(ui, session, commands);
+                    }
+                    if choices.views && choices.modes {
+                        ui.add_space(6.0);
+                    }
+                    if choices.modes {
+                        overlay_mode(ui, session, commands);
+                    }
                 });
             });
         });

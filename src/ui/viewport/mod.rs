@@ -73,6 +73,53 @@ pub fn draw(
     asked: &mut Asked,
 ) {
     let whole = ui.max_rect();
+    let places = views(ui, whole, session, around, state, asked);
+    chooser::draw(ui, whole, session, chooser::Choices::ALL, &mut asked.commands);
+    corners::errors(ui, whole, session);
+    hints::draw(
+        ui,
+        places.into_iter().flatten().next().map_or(whole, |place| place.rect),
+        session,
+        around,
+        asked,
+    );
+    unit_question::draw(ui, whole, session, &mut asked.commands);
+    if around.files_hover {
+        let stroke = egui::Stroke::new(3.0, theme::ACCENT);
+        ui.painter().rect_stroke(whole.shrink(6.0), 10.0, stroke, egui::StrokeKind::Inside);
+    }
+}
+
+/// The same for a participant of a study: only what may be used, and no numbers that a pose could be compared with.
+pub fn draw_for_study(
+    ui: &mut Ui,
+    session: &Session,
+    around: &Surroundings<'_>,
+    state: &mut UiState,
+    asked: &mut Asked,
+    tools: &[crate::study::Tool],
+) {
+    use crate::study::Tool as Allowed;
+    let whole = ui.max_rect();
+    let places = views(ui, whole, session, around, state, asked);
+    let choices = chooser::Choices {
+        views: tools.contains(&Allowed::SceneView),
+        modes: tools.contains(&Allowed::Looks),
+    };
+    chooser::draw(ui, whole, session, choices, &mut asked.commands);
+    let rect = places.into_iter().flatten().next().map_or(whole, |place| place.rect);
+    hints::draw(ui, rect, session, around, asked);
+}
+
+/// The views that are on screen, each with what lies in it.
+fn views(
+    ui: &mut Ui,
+    whole: Rect,
+    session: &Session,
+    around: &Surroundings<'_>,
+    state: &mut UiState,
+    asked: &mut Asked,
+) -> [Option<ViewportPlace>; 2] {
     // Without a photo there is no camera to place anything by.
     let arrangement = match session.photo() {
         Some(_) => session.panes().arrangement,
@@ -88,21 +135,7 @@ pub fn draw(
     };
     state.viewport = photo_rect.map(|rect| photo::draw(ui, rect, session, around));
     state.scene_viewport = scene_rect.map(|rect| scene::draw(ui, rect, session, around, asked));
-    let places = [state.viewport, state.scene_viewport];
-    chooser::draw(ui, whole, session, &mut asked.commands);
-    corners::errors(ui, whole, session);
-    hints::draw(
-        ui,
-        places.into_iter().flatten().next().map_or(whole, |place| place.rect),
-        session,
-        around,
-        asked,
-    );
-    unit_question::draw(ui, whole, session, &mut asked.commands);
-    if around.files_hover {
-        let stroke = egui::Stroke::new(3.0, theme::ACCENT);
-        ui.painter().rect_stroke(whole.shrink(6.0), 10.0, stroke, egui::StrokeKind::Inside);
-    }
+    [state.viewport, state.scene_viewport]
 }
 
 /// Two rectangles side by side, and between them a divider that can be dragged.

@@ -1,0 +1,315 @@
+//! Taking part in a study: the participant's steps, one sample at a time, with nothing else of the program around them.
+
+mod allowed;
+mod arriving;
+mod frame;
+mod keeping;
+mod requests;
+mod sending;
+mod trial;
+mod view;
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
+use std::rc::Rc;
+use std::sync::Arc;
+
+use super::PinPose;
+use crate::platform::{self, Storage};
+use crate::scene::{MeshAsset, PhotoAsset};
+use crate::session::Session;
+use crate::study::pack::StudyFiles;
+use crate::study::{AskedFor, Environment, EventKind, Participant, Participation, Plan, Reopened, Step};
+use crate::ui::study::{Pictures, StudyRequest, TlxPair};
+
+use arriving::Arrived;
+use keeping::Keeping;
+pub use keeping::is_kept_id;
+use sending::Sender;
+
+/// A study that somebody takes part in, from its address to the way out.
+pub struct Participating {
+    ctx: egui::Context,
+    /// What the page's address says, or nothing for a preview.
+    link: Option<Link>,
+    state: State,
+    pictures: Pictures,
+    /// Grows with every screen.
+    page: usize,
+    arrived: Rc<RefCell<VecDeque<Arrived>>>,
+    storage: Rc<dyn Storage>,
+    /// When the tab was hidden and looked at again.
+    visibility: Rc<RefCell<VecDeque<(bool, f64)>>>,
+    backend: String,
+    /// What the researcher had open, to come back to after a preview.
+    before: Option<Box<Session>>,
+}
+
+/// What a participant's address says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Link {
+    pub study: String,
+}
+
+enum State {
+    /// `study.json`, its files, and what is made of them.
+    Loading(arriving::Loading),
+    Problem { text: String, can_retry: bool },
+    /// All is here, but not who takes part.
+    AskId(Box<Ready>),
+    /// What is kept of an earlier visit is on its way.
+    LookingBack { ready: Box<Ready>, participant: Participant },
+    Running(Box<Running>),
+}
+
+/// A study with all of its files read.
+pub struct Ready {
+    files: StudyFiles,
+    /// By their paths in the study.
+    photos: BTreeMap<String, Arc<PhotoAsset>>,
+    meshes: BTreeMap<String, Arc<MeshAsset>>,
+}
+
+/// A participation on screen.
+struct Running {
+    ready: Ready,
+    participation: Participation,
+    stage: Option<trial::OnStage>,
+    /// The pairs of the questionnaire that is shown.
+    pairs: Vec<TlxPair>,
+    keeping: Keeping,
+    sender: Sender,
+    /// When the page goes on by itself.
+    redirect_at_ms: Option<f64>,
+}
+
+impl Running {
+    fn step(&self) -> Step {
+        self.participation.step(&self.ready.files.study)
+    }
+}
+
+impl PinPose {
+    /// Takes part in the study that the page's address names.
+    pub(super) fn start_study(&mut self, link: Link) {
+        self.autosave.hold();
+        let mut study = self.new_participating(Some(link));
+        study.fetch_study();
+        self.study = Some(Box::new(study));
+    }
+
+    /// Shows a study as its participants will see it; nothing of it is kept or sent.
+    pub fn preview_study(&mut self, zip: Arc<[u8]>) {
+        let before = std::mem::take(&mut self.session);
+        let mut study = self.new_participating(None);
+        study.before = Some(Box::new(before));
+        study.take_zip(zip);
+        self.study = Some(Box::new(study));
+        self.hands = crate::interact::Hands::default();
+    }
+
+    fn new_participating(&self, link: Option<Link>) -> Participating {
+        let visibility: Rc<RefCell<VecDeque<(bool, f64)>>> = Rc::default();
+        let (changes, ctx) = (visibility.clone(), self.ctx.clone());
+        platform::watch_hidden(move |is_hidden, at_ms| {
+            changes.borrow_mut().push_back((is_hidden, at_ms));
+            ctx.request_repaint();
+        });
+        Participating {
+            ctx: self.ctx.clone(),
+            link,
+            state: State::Loading(arriving::Loading::default()),
+            pictures: Pictures::default(),
+            page: 0,
+            arrived: Rc::default(),
+            storage: self.scenes.storage(),
+            visibility,
+            backend: self.backend.clone(),
+            before: None,
+        }
+    }
+
+    pub(super) fn is_in_study(&self) -> bool {
+        self.study.is_some()
+    }
+
+    /// Once a frame: what has come, the clock, what is kept and sent.
+    pub(super) fn tick_study(&mut self) {
+        let Some(mut study) = self.study.take() else { return };
+        let now_ms = platform::now_ms();
+        study.tick_arriving(&mut self.loading);
+        if let State::Running(running) = &mut study.state {
+            let hidden: Vec<(bool, f64)> = study.visibility.borrow_mut().drain(..).collect();
+            running.tick_clock(&hidden, now_ms);
+        }
+        self.study = Some(study);
+        self.tick_trial(now_ms);
+        if let Some(study) = &mut self.study
+            && let State::Running(running) = &mut study.state
+        {
+            running.tick_sending(&study.ctx, now_ms);
+            running.keeping.tick(&running.participation, now_ms);
+        }
+    }
+
+    pub(super) fn take_study_request(&mut self, request: StudyRequest) {
+        if request == StudyRequest::LeavePreview {
+            return self.leave_preview();
+        }
+        let Some(study) = &mut self.study else { return };
+        let now_ms = platform::now_ms();
+        match (&mut study.state, request) {
+            (State::AskId(_), StudyRequest::Id(id)) => study.look_back(&id),
+            (State::Problem { .. }, StudyRequest::Retry) => study.fetch_study(),
+            (State::Running(running), request) => {
+                if let Err(problem) = running.take_request(&request, &study.ctx, now_ms) {
+                    self.notify(crate::session::Notice::error(problem));
+                }
+            }
+            _ => {}
+        }
+        if let Some(study) = &mut self.study {
+            study.turn_page();
+        }
+    }
+
+    fn leave_preview(&mut self) {
+        if let Some(before) = self.study.take_if(|study| study.before.is_some()).and_then(|study| study.before)
+        {
+            self.session = *before;
+            self.hands = crate::interact::Hands::default();
+        }
+    }
+}
+
+impl Participating {
+    fn fail(&mut self, text: impl Into<String>, can_retry: bool) {
+        self.state = State::Problem { text: text.into(), can_retry };
+        self.turn_page();
+    }
+
+    /// Another screen is shown: what was typed on the last one is gone.
+    fn turn_page(&mut self) {
+        self.page += 1;
+        self.ctx.request_repaint();
+    }
+
+    /// All files are here: the participant is known from the link, or asked for.
+    fn begin(&mut self, ready: Ready) {
+        self.show_pictures(&ready);
+        let named = |name: &String| platform::page_parameter(name).filter(|id| !id.trim().is_empty());
+        let id = match self.link {
+            Some(_) => ready.files.study.parameters.participant.iter().find_map(named),
+            None => Some("preview".to_owned()),
+        };
+        self.state = State::AskId(Box::new(ready));
+        match id {
+            Some(id) => self.look_back(&id),
+            None => self.turn_page(),
+        }
+    }
+
+    fn show_pictures(&mut self, ready: &Ready) {
+        for asset in &ready.files.study.texts.pictures {
+            let decoded = ready.files.file(asset).and_then(|file| crate::photo::decode(&file.bytes).ok());
+            if let Some(decoded) = decoded {
+                self.pictures.insert(&self.ctx, &asset.name, &decoded.pixels);
+            }
+        }
+    }
+
+    /// Looks for what is kept of an earlier visit.
+    fn look_back(&mut self, id: &str) {
+        let state = std::mem::replace(&mut self.state, State::Loading(arriving::Loading::default()));
+        let State::AskId(ready) = state else {
+            self.state = state;
+            return;
+        };
+        let parameters = ready.files.study.parameters.recruiter.iter();
+        let given = parameters
+            .filter_map(|(name, parameter)| Some((name.clone(), platform::page_parameter(parameter)?)));
+        let participant = Participant { id: id.to_owned(), recruiter: given.collect() };
+        let kept = self.link.as_ref().map(|_| keeping::kept_id(&ready.files.study.id, id));
+        self.state = State::LookingBack { ready, participant };
+        match kept {
+            Some(kept) => self.load_kept(&kept),
+            None => self.run(None),
+        }
+    }
+
+    /// Begins, or goes on where an earlier visit ended.
+    fn run(&mut self, kept: Option<Participation>) {
+        let state = std::mem::replace(&mut self.state, State::Loading(arriving::Loading::default()));
+        let State::LookingBack { ready, participant } = state else { return };
+        let now_ms = platform::now_ms();
+        let is_same = |kept: &Participation| kept.results.study.sha256 == ready.files.sha256;
+        let reopened = kept.filter(is_same).map(|kept| kept.reopen(ready.files.study.resume, now_ms));
+        let participation = match reopened {
+            Some(Reopened::Blocked) => {
+                let text = "This study was begun here before, and it cannot be gone on with.";
+                return self.fail(text, false);
+            }
+            Some(Reopened::GoesOn(participation) | Reopened::Done(participation)) => *participation,
+            Some(Reopened::Restarts) | None => match self.fresh(&ready, participant, now_ms) {
+                Ok(participation) => participation,
+                Err(problem) => return self.fail(problem, false),
+            },
+        };
+        let id = participation.results.participant.id.clone();
+        let keeping = match &self.link {
+            Some(_) => Keeping::new(self.storage.clone(), &ready.files.study.id, &id),
+            None => Keeping::nowhere(),
+        };
+        let sender = Sender::new(&ready.files.study, self.link.is_some() && !participation.is_saved);
+        let mut running = Running {
+            ready: *ready,
+            participation,
+            stage: None,
+            pairs: Vec::new(),
+            keeping,
+            sender,
+            redirect_at_ms: None,
+        };
+        running.enter(now_ms);
+        self.state = State::Running(Box::new(running));
+        self.turn_page();
+    }
+
+    fn fresh(&self, ready: &Ready, participant: Participant, now_ms: f64) -> Result<Participation, String> {
+        let parameters = &ready.files.study.parameters;
+        let asked = AskedFor {
+            condition: platform::page_parameter(&parameters.condition),
+            sample_set: platform::page_parameter(&parameters.sample_set),
+        };
+        let asked = if self.link.is_some() { asked } else { AskedFor::default() };
+        let plan = Plan::new(&ready.files.study, &participant.id, &asked);
+        let plan = plan.map_err(|error| error.to_string())?;
+        let environment = self.environment();
+        Ok(Participation::begin(ready.files.record(), plan, participant, environment, now_ms))
+    }
+
+    fn environment(&self) -> Environment {
+        let facts = platform::browser_facts();
+        Environment {
+            browser: facts.browser,
+            language: facts.language,
+            backend: self.backend.clone(),
+            screen: facts.screen,
+            window: facts.window,
+            pixel_ratio: facts.pixel_ratio,
+            utc_offset_minutes: platform::utc_offset_minutes(),
+        }
+    }
+}
+
+/// A gesture's kind, by the label that begins it.
+fn kind_of_gesture(label: &str, by_handle: bool) -> EventKind {
+    match label {
+        _ if by_handle => EventKind::Handle,
+        "Move" => EventKind::Move,
+        "Rotate" => EventKind::Rotate,
+        "Change depth" => EventKind::Depth,
+        "Add pin" | "Drag pin" => EventKind::Pin,
+        _ => EventKind::Other,
+    }
+}

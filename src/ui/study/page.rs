@@ -1,0 +1,191 @@
+//! A screen of text and questions: one column that is easy to read, and at its foot the one thing to do next.
+
+use egui::{Align, Checkbox, Layout, RichText, ScrollArea, TextEdit, Ui, Vec2};
+
+use super::{State, StudyRequest, StudyScreen, StudyView};
+use super::{finish, practice, questionnaire, questions, text};
+use crate::ui::{study::allowed_keys, theme};
+
+/// As long as lines of text are read well.
+const COLUMN: f32 = 640.0;
+
+const BUTTON: Vec2 = Vec2::new(160.0, 36.0);
+
+pub fn draw(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut Vec<StudyRequest>) {
+    if view.is_preview {
+        preview_bar(ui, requests);
+    }
+    // A new screen begins at its top.
+    ScrollArea::vertical().id_salt(("study page", view.page)).auto_shrink(false).show(ui, |ui| {
+        let width = (ui.available_width() - 48.0).min(COLUMN);
+        ui.vertical_centered(|ui| {
+            ui.set_max_width(width);
+            ui.add_space(40.0);
+            ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                ui.spacing_mut().item_spacing.y = 10.0;
+                ui.label(RichText::new(view.title).small().color(ui.visuals().weak_text_color()));
+                screen(ui, view, state, requests);
+            });
+            ui.add_space(48.0);
+        });
+    });
+}
+
+fn preview_bar(ui: &mut Ui, requests: &mut Vec<StudyRequest>) {
+    ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        let words = RichText::new("Preview: nothing is sent or kept").color(theme::warning(ui.visuals()));
+        ui.label(words);
+        if ui.button("Back to the builder").clicked() {
+            requests.push(StudyRequest::LeavePreview);
+        }
+    });
+}
+
+fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut Vec<StudyRequest>) {
+    match view.screen {
+        StudyScreen::Loading { done, all } => loading(ui, done, all),
+        StudyScreen::Problem { text, can_retry } => problem(ui, view, text, can_retry, requests),
+        StudyScreen::AskId => ask_id(ui, state, requests),
+        StudyScreen::Consent { text } => consent(ui, view, text, state, requests),
+        StudyScreen::Declined => {
+            heading(ui, "Thank you");
+            ui.label("You did not agree, so nothing was recorded. You can close this page.");
+        }
+        StudyScreen::Instructions { text, condition, practice, trials } => {
+            text::draw(ui, text, view.pictures);
+            if text.trim().is_empty() {
+                heading(ui, "What to do");
+                ui.label("Move and turn the object until it lies exactly on its image in the photo.");
+            }
+            ui.add_space(4.0);
+            allowed_keys::draw(ui, &condition.tools);
+            ui.add_space(4.0);
+            ui.label(what_comes(practice, trials));
+            go_on(ui, if practice > 0 { "Start practice" } else { "Continue" }, requests);
+        }
+        StudyScreen::Questions { items } => questions::draw(ui, "Before we start", items, state, requests),
+        StudyScreen::Feedback { feedback, may_try_again } => {
+            practice::draw(ui, feedback, may_try_again, requests);
+        }
+        StudyScreen::Begin { condition, number, count, trials } => {
+            let title = if count > 1 {
+                format!("Part {number} of {count}: {}", condition.title)
+            } else {
+                "Now it counts".to_owned()
+            };
+            heading(ui, &title);
+            text::draw(ui, &condition.instructions, view.pictures);
+            let words = format!(
+                "{} follow. The time of each starts when the photo appears and ends when you confirm.",
+                photos(trials)
+            );
+            ui.label(words);
+            if count > 1 {
+                allowed_keys::draw(ui, &condition.tools);
+            }
+            go_on(ui, "Start", requests);
+        }
+        StudyScreen::Rest { done, all } => rest(ui, done, all, requests),
+        StudyScreen::Questionnaire { questionnaire, about, pairs } => {
+            questionnaire::draw(ui, questionnaire, about, pairs, state, requests);
+        }
+        StudyScreen::Finish(finish) => finish::draw(ui, view, &finish, requests),
+        // Drawn with the viewport.
+        StudyScreen::Trial(_) => {}
+    }
+}
+
+pub fn heading(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).heading().strong());
+}
+
+/// The button at the foot of a screen.
+pub fn primary(ui: &mut Ui, text: &str) -> bool {
+    ui.add_space(12.0);
+    ui.add(theme::primary_button(text).min_size(BUTTON)).clicked()
+}
+
+fn go_on(ui: &mut Ui, text: &str, requests: &mut Vec<StudyRequest>) {
+    if primary(ui, text) {
+        requests.push(StudyRequest::GoOn);
+    }
+}
+
+fn photos(count: usize) -> String {
+    match count {
+        1 => "One photo".to_owned(),
+        count => format!("{count} photos"),
+    }
+}
+
+fn what_comes(practice: usize, trials: usize) -> String {
+    match practice {
+        0 => format!("{} to work on.", photos(trials)),
+        1 => format!("First one photo to practise, then {} that count.", photos(trials).to_lowercase()),
+        _ => format!("First {practice} photos to practise, then {} that count.", photos(trials).to_lowercase()),
+    }
+}
+
+fn loading(ui: &mut Ui, done: usize, all: usize) {
+    heading(ui, "Getting the study ready");
+    let part = if all == 0 { 0.0 } else { done as f32 / all as f32 };
+    ui.add(egui::ProgressBar::new(part).desired_height(8.0));
+    if all > 0 {
+        ui.label(RichText::new(format!("{done} of {all} files")).weak());
+    }
+}
+
+fn problem(ui: &mut Ui, view: &StudyView<'_>, text: &str, can_retry: bool, requests: &mut Vec<StudyRequest>) {
+    heading(ui, "The study cannot go on here");
+    ui.label(text);
+    if !view.contact.is_empty() {
+        ui.label(format!("If this does not help, please write to {}.", view.contact));
+    }
+    if can_retry && primary(ui, "Try again") {
+        requests.push(StudyRequest::Retry);
+    }
+}
+
+fn ask_id(ui: &mut Ui, state: &mut State, requests: &mut Vec<StudyRequest>) {
+    heading(ui, "Welcome");
+    ui.label("Please type the participant id that you were given.");
+    let field = ui.add(TextEdit::singleline(&mut state.id).desired_width(280.0).char_limit(80));
+    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Participant id"));
+    let is_given = !state.id.trim().is_empty();
+    let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+    ui.add_space(12.0);
+    let button = ui.add_enabled(is_given, theme::primary_button("Continue").min_size(BUTTON));
+    if button.clicked() || (entered && is_given) {
+        requests.push(StudyRequest::Id(state.id.trim().to_owned()));
+    }
+}
+
+fn consent(
+    ui: &mut Ui,
+    view: &StudyView<'_>,
+    words: &str,
+    state: &mut State,
+    requests: &mut Vec<StudyRequest>,
+) {
+    text::draw(ui, words, view.pictures);
+    ui.separator();
+    ui.add(Checkbox::new(&mut state.consent, "I have read this and agree to take part"));
+    ui.add_space(12.0);
+    ui.horizontal(|ui| {
+        let agree = theme::primary_button("Agree and continue").min_size(BUTTON);
+        if ui.add_enabled(state.consent, agree).clicked() {
+            requests.push(StudyRequest::Agree);
+        }
+        if ui.add(egui::Button::new("I do not agree").min_size(BUTTON)).clicked() {
+            requests.push(StudyRequest::Decline);
+        }
+    });
+}
+
+fn rest(ui: &mut Ui, done: usize, all: usize, requests: &mut Vec<StudyRequest>) {
+    heading(ui, "Take a break if you like");
+    ui.label(format!("{done} of {all} photos are done. The clock stands still on this screen."));
+    ui.add(egui::ProgressBar::new(done as f32 / all.max(1) as f32).desired_height(8.0));
+    go_on(ui, "Continue", requests);
+}
