@@ -18,14 +18,14 @@ mod web;
 
 pub use file_tree::{FileFuture, FileTree, FolderEvent, GoOn};
 pub use memory::MemoryStorage;
-pub use network::{BrowserFacts, NetworkFuture, Request};
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{
-    Background, ExportFolder, FolderStorage, GrowingDownload, default_storage, download, fetch_example,
-    memory_bytes, navigation_ms, new_scene_id, now_ms, open_folder, page_parameter, page_version, pick_files,
-    pick_folder, png_of_foreign, reload, report_crash, send_event, spawn, update_offer, wasm_bytes,
-    watch_dropped_folders, when_left, browser_facts, fetch, go_to, send_request, watch_hidden,
+    Background, ExportFolder, FolderStorage, GrowingDownload, browser_facts, default_storage, download,
+    fetch, fetch_example, go_to, memory_bytes, navigation_ms, new_scene_id, now_ms, open_folder,
+    page_parameter, page_version, pick_files, pick_folder, png_of_foreign, reload, report_crash, send_event,
+    send_request, spawn, update_offer, wasm_bytes, watch_dropped_folders, watch_hidden, when_left,
 };
+pub use network::{BrowserFacts, NetworkFuture, Request};
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
 };
@@ -37,10 +37,11 @@ pub use storage::{
 pub use time_zone::utc_offset_minutes;
 #[cfg(target_arch = "wasm32")]
 pub use web::{
-    Background, ExportFolder, GrowingDownload, default_storage, download, fetch_example, install_panic_hook,
-    memory_bytes, navigation_ms, new_scene_id, now_ms, page_parameter, page_version, pick_files, pick_folder,
-    png_of_foreign, reload, report_crash, send_event, spawn, update_offer, wasm_bytes, watch_dropped_folders,
-    watch_for_updates, when_left, browser_facts, fetch, go_to, send_request, watch_hidden,
+    Background, ExportFolder, GrowingDownload, browser_facts, default_storage, download, fetch,
+    fetch_example, go_to, install_panic_hook, memory_bytes, navigation_ms, new_scene_id, now_ms,
+    page_parameter, page_version, pick_files, pick_folder, png_of_foreign, reload, report_crash, send_event,
+    send_request, spawn, update_offer, wasm_bytes, watch_dropped_folders, watch_for_updates, watch_hidden,
+    when_left,
 };
 
 /// A file that the user picked or dropped.

@@ -148,6 +148,19 @@ fn what_is_missing_is_said() {
     fails(&["report", &results, "--out", &out], "--truth", 2);
     fails(&["report", &truth, "--truth", &truth, "--out", &out], "there is no result file", 1);
     fails(&["report", &results, "--truth", &truth, "--out", &out, "--margin", "0"], "above zero", 2);
+    let damaged = folder.join("damaged.json");
+    std::fs::write(&damaged, r#"{"format": "pinpose-study-results", "version": 1, "trials": 3}"#).unwrap();
+    let damaged = damaged.display().to_string();
+    fails(&["report", &damaged, "--truth", &truth, "--out", &out], "damaged.json: line 1", 1);
+    // A second download of the same participation, from before it was finished, is not a second person.
+    let whole = std::fs::read_to_string(folder.join("results/person00.json")).unwrap();
+    let mut early: Value = serde_json::from_str(&whole).unwrap();
+    early["finished_at"] = Value::Null;
+    early["trials"].as_array_mut().unwrap().truncate(2);
+    std::fs::write(folder.join("results/early.json"), early.to_string()).unwrap();
+    let found = report(&folder, &["--no-png"]);
+    assert_eq!((found["participants"].as_u64(), found["trials"].as_u64()), (Some(2), Some(12)));
+    assert!(found["remarks"].to_string().contains("early.json: left out, person00.json"), "{found}");
     std::fs::remove_file(folder.join("assets/box.obj")).unwrap();
     // One of the two meshes is gone: the other's sample is reported.
     let found = report(&folder, &["--no-png"]);

@@ -49,8 +49,7 @@ impl PinPose {
         let Some(study) = self.study.take() else { return };
         let mut requests = Vec::new();
         let view = study.view(busy.as_ref().map(|busy| busy.text.as_str()));
-        let asked =
-            ui::study::draw(ui, &self.session, &view, &around, &mut self.ui_state, &mut requests);
+        let asked = ui::study::draw(ui, &self.session, &view, &around, &mut self.ui_state, &mut requests);
         self.study = Some(study);
         self.note_drawn();
         self.place_views();

@@ -4,9 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use crate::platform::{
-    self, Journal, SaveTerms, Saved, SceneHeading, SceneId, Storage,
-};
+use crate::platform::{self, Journal, SaveTerms, Saved, SceneHeading, SceneId, Storage};
 use crate::study::{Participation, results_name};
 
 /// A gesture a moment after another one is written together with it.
@@ -53,8 +51,7 @@ struct Shared {
 impl Keeping {
     pub fn new(storage: Rc<dyn Storage>, study: &str, participant: &str) -> Self {
         let id = kept_id(study, participant);
-        let shared =
-            Shared { storage, id, is_writing: false, unwritten: None, is_forgotten: false };
+        let shared = Shared { storage, id, is_writing: false, unwritten: None, is_forgotten: false };
         let shared = Rc::new(RefCell::new(shared));
         let leaving = shared.clone();
         platform::when_left(move || {

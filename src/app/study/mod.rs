@@ -54,11 +54,17 @@ pub struct Link {
 enum State {
     /// `study.json`, its files, and what is made of them.
     Loading(arriving::Loading),
-    Problem { text: String, can_retry: bool },
+    Problem {
+        text: String,
+        can_retry: bool,
+    },
     /// All is here, but not who takes part.
     AskId(Box<Ready>),
     /// What is kept of an earlier visit is on its way.
-    LookingBack { ready: Box<Ready>, participant: Participant },
+    LookingBack {
+        ready: Box<Ready>,
+        participant: Participant,
+    },
     Running(Box<Running>),
 }
 
@@ -174,7 +180,8 @@ impl PinPose {
     }
 
     fn leave_preview(&mut self) {
-        if let Some(before) = self.study.take_if(|study| study.before.is_some()).and_then(|study| study.before)
+        if let Some(before) =
+            self.study.take_if(|study| study.before.is_some()).and_then(|study| study.before)
         {
             self.session = *before;
             self.hands = crate::interact::Hands::default();

@@ -35,7 +35,10 @@ impl Running {
                 self.participation.go_on(study, now_ms);
             }
             (Step::Practice(_), StudyRequest::TryAgain) => self.participation.try_again(),
-            (Step::Questionnaire { questionnaire, condition }, StudyRequest::Questionnaire(answers, pairs)) => {
+            (
+                Step::Questionnaire { questionnaire, condition },
+                StudyRequest::Questionnaire(answers, pairs),
+            ) => {
                 let result = self.questionnaire_result(questionnaire, condition, answers, pairs, now_ms);
                 self.participation.answer_questionnaire(result, now_ms);
             }

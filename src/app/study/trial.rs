@@ -44,7 +44,8 @@ impl Running {
     }
 
     pub(super) fn tools(&self) -> &[Tool] {
-        let condition = self.sample().and_then(|(_, place)| self.ready.files.study.condition(place.condition));
+        let condition =
+            self.sample().and_then(|(_, place)| self.ready.files.study.condition(place.condition));
         condition.map_or(&[], |condition| condition.tools.as_slice())
     }
 
@@ -219,7 +220,9 @@ impl PinPose {
         if is_over && matches!(running.step(), Step::Trial(_)) {
             running.end_trial(Outcome::TimedOut, now_ms);
             study.turn_page();
-            self.notify(crate::session::Notice::info("The time for this photo was over; here is what comes next"));
+            self.notify(crate::session::Notice::info(
+                "The time for this photo was over; here is what comes next",
+            ));
         }
     }
 
@@ -283,12 +286,9 @@ impl PinPose {
             }
         }
         let command = match (command, self.session.selected_annotation()) {
-            (Command::Run(CommandId::ResetPose), Some((photo, object, _))) => Command::SetPose {
-                photo,
-                object,
-                camera_from_object: start,
-                source: PoseSource::Manual,
-            },
+            (Command::Run(CommandId::ResetPose), Some((photo, object, _))) => {
+                Command::SetPose { photo, object, camera_from_object: start, source: PoseSource::Manual }
+            }
             (command, _) => command,
         };
         self.carry_out_in_study(command, start, by_handle, now_ms)

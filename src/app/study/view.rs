@@ -89,9 +89,7 @@ impl Running {
                 let trials = plan.trials.iter().filter(|trial| trial.condition == condition.id).count();
                 StudyScreen::Begin { condition, number, count: plan.conditions.len(), trials }
             }),
-            Step::Trial(index) => {
-                StudyScreen::Trial(self.trial_view(index, plan.trials.len(), false, busy))
-            }
+            Step::Trial(index) => StudyScreen::Trial(self.trial_view(index, plan.trials.len(), false, busy)),
             Step::Rest { trial } => StudyScreen::Rest { done: trial, all: plan.trials.len() },
             Step::Questionnaire { questionnaire, condition } => {
                 let about = condition.filter(|_| plan.conditions.len() > 1);
@@ -114,9 +112,10 @@ impl Running {
     ) -> TrialView<'a> {
         let limits = &self.ready.files.study.limits;
         let trial = self.participation.trial();
-        let seconds_left = limits.trial_seconds.filter(|_| !is_practice).map(|seconds| {
-            seconds - trial.map_or(0.0, RunningTrial::time_ms) / 1000.0
-        });
+        let seconds_left = limits
+            .trial_seconds
+            .filter(|_| !is_practice)
+            .map(|seconds| seconds - trial.map_or(0.0, RunningTrial::time_ms) / 1000.0);
         let worked = self.participation.minutes_since_rest(platform::now_ms());
         TrialView {
             number: index + 1,

@@ -32,8 +32,7 @@ pub fn send_request(request: Request) -> NetworkFuture<()> {
         init.set_method(request.method);
         init.set_body(&request.body.into());
         let headers = js_sys::Object::new();
-        js_sys::Reflect::set(&headers, &"Content-Type".into(), &"application/json".into())
-            .map_err(failed)?;
+        js_sys::Reflect::set(&headers, &"Content-Type".into(), &"application/json".into()).map_err(failed)?;
         init.set_headers(&headers);
         let sent = JsFuture::from(window.fetch_with_str_and_init(&request.url, &init)).await;
         let response: web_sys::Response = sent.map_err(failed)?.dyn_into().map_err(failed)?;
@@ -50,9 +49,7 @@ pub fn watch_hidden(changed: impl Fn(bool, f64) + 'static) {
     let Some(document) = web_sys::window().and_then(|window| window.document()) else { return };
     let of_page = document.clone();
     let listener = Closure::<dyn Fn()>::new(move || changed(of_page.hidden(), now_ms()));
-    document
-        .add_event_listener_with_callback("visibilitychange", listener.as_ref().unchecked_ref())
-        .ok();
+    document.add_event_listener_with_callback("visibilitychange", listener.as_ref().unchecked_ref()).ok();
     // It listens as long as the page lives.
     listener.forget();
 }

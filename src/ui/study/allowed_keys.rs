@@ -16,10 +16,9 @@ fn lines(tool: Tool, keymap: &Keymap) -> Vec<(String, &'static str)> {
             line("Drag the object", "Move it: the point you grab stays under the cursor"),
             line("Shift + wheel", "Nearer or farther"),
         ],
-        Tool::Rotate => vec![
-            line("Right drag", "Turn it"),
-            line("Ctrl + right drag", "Turn it in the picture's plane"),
-        ],
+        Tool::Rotate => {
+            vec![line("Right drag", "Turn it"), line("Ctrl + right drag", "Turn it in the picture's plane")]
+        }
         Tool::Handles => vec![line("Drag a coloured handle", "Move or turn it along one direction only")],
         Tool::Nudge => vec![
             line("Arrow keys", "Move it by a pixel (Shift: ten, Alt: a tenth)"),
@@ -37,10 +36,7 @@ fn lines(tool: Tool, keymap: &Keymap) -> Vec<(String, &'static str)> {
             (format!("{} held", key(CommandId::ToggleOverlay)), "Hide the object as long as the key is down"),
             (key(CommandId::NextOverlay), "Draw it in another way"),
         ],
-        Tool::Undo => vec![
-            (key(CommandId::Undo), "Undo"),
-            (key(CommandId::Redo), "Redo"),
-        ],
+        Tool::Undo => vec![(key(CommandId::Undo), "Undo"), (key(CommandId::Redo), "Redo")],
     }
 }
 

@@ -23,9 +23,14 @@ pub enum Sending<'a> {
     /// The participant sends the file.
     ByHand,
     /// Which try of how many.
-    UnderWay { attempt: u32, of: u32 },
+    UnderWay {
+        attempt: u32,
+        of: u32,
+    },
     Arrived,
-    Failed { reason: &'a str },
+    Failed {
+        reason: &'a str,
+    },
 }
 
 const SIZE: Vec2 = Vec2::new(160.0, 36.0);

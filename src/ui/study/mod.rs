@@ -26,21 +26,51 @@ pub use trial::TrialView;
 #[derive(Debug, Clone, Copy)]
 pub enum StudyScreen<'a> {
     /// Files are on their way: how many of how many.
-    Loading { done: usize, all: usize },
+    Loading {
+        done: usize,
+        all: usize,
+    },
     /// It cannot go on; a sentence that says why.
-    Problem { text: &'a str, can_retry: bool },
+    Problem {
+        text: &'a str,
+        can_retry: bool,
+    },
     /// The link names no participant.
     AskId,
-    Consent { text: &'a str },
+    Consent {
+        text: &'a str,
+    },
     Declined,
-    Instructions { text: &'a str, condition: &'a Condition, practice: usize, trials: usize },
-    Questions { items: &'a [Item] },
+    Instructions {
+        text: &'a str,
+        condition: &'a Condition,
+        practice: usize,
+        trials: usize,
+    },
+    Questions {
+        items: &'a [Item],
+    },
     Trial(TrialView<'a>),
-    Feedback { feedback: &'a Feedback, may_try_again: bool },
+    Feedback {
+        feedback: &'a Feedback,
+        may_try_again: bool,
+    },
     /// Before a condition's first trial.
-    Begin { condition: &'a Condition, number: usize, count: usize, trials: usize },
-    Rest { done: usize, all: usize },
-    Questionnaire { questionnaire: &'a Questionnaire, about: Option<&'a str>, pairs: &'a [TlxPair] },
+    Begin {
+        condition: &'a Condition,
+        number: usize,
+        count: usize,
+        trials: usize,
+    },
+    Rest {
+        done: usize,
+        all: usize,
+    },
+    Questionnaire {
+        questionnaire: &'a Questionnaire,
+        about: Option<&'a str>,
+        pairs: &'a [TlxPair],
+    },
     Finish(FinishView<'a>),
 }
 

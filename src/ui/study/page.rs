@@ -123,7 +123,9 @@ fn what_comes(practice: usize, trials: usize) -> String {
     match practice {
         0 => format!("{} to work on.", photos(trials)),
         1 => format!("First one photo to practise, then {} that count.", photos(trials).to_lowercase()),
-        _ => format!("First {practice} photos to practise, then {} that count.", photos(trials).to_lowercase()),
+        _ => {
+            format!("First {practice} photos to practise, then {} that count.", photos(trials).to_lowercase())
+        }
     }
 }
 

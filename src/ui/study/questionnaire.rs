@@ -52,7 +52,8 @@ fn tlx(
         ui.label(RichText::new(format!("{} of {}", state.pairs.len() + 1, pairs.len())).weak());
         ui.horizontal(|ui| {
             for scale in [left, right] {
-                let button = Button::new(RichText::new(scale.title).size(15.0)).min_size(Vec2::new(200.0, 56.0));
+                let button =
+                    Button::new(RichText::new(scale.title).size(15.0)).min_size(Vec2::new(200.0, 56.0));
                 if ui.add(button).on_hover_text(scale.question).clicked() {
                     state.pairs.push(PairChoice {
                         left: left.id.to_owned(),

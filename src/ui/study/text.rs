@@ -100,11 +100,7 @@ fn format(ui: &Ui, span: &Span, size: f32, strong: bool) -> TextFormat {
         font_id,
         // The font has one weight: what is bold stands out by its colour.
         color: if is_strong { visuals.strong_text_color() } else { visuals.text_color() },
-        underline: if span.bold && !strong {
-            Stroke::new(1.0, theme::accent(visuals))
-        } else {
-            Stroke::NONE
-        },
+        underline: if span.bold && !strong { Stroke::new(1.0, theme::accent(visuals)) } else { Stroke::NONE },
         italics: span.italic,
         background: if span.code { visuals.faint_bg_color } else { egui::Color32::TRANSPARENT },
         ..TextFormat::default()
