@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::input::{ReportCondition, ReportInput, ReportSample, SampleView};
 use super::people::{participant_of, sorted_and_labelled};
-use crate::formats::{NamedFile, read_mesh_with};
+use crate::formats::NamedFile;
 use crate::mesh::Mesh;
 use crate::scene::{MeshFrame, Sha256};
 use crate::study::{Results, Study, StudyError, Truth, TruthSample};
@@ -98,14 +98,20 @@ pub fn mesh_of_study(
     companions: &[NamedFile],
     mesh_from_file: &[[f64; 4]; 4],
 ) -> Result<Mesh, String> {
-    let (asset, _) = read_mesh_with(file, companions).map_err(|error| error.to_string())?;
+    let find = |asked: &str| {
+        // A study keeps its files' names without their folders.
+        let asked = asked.rsplit(['/', '\\']).next().unwrap_or(asked);
+        let found = companions.iter().find(|companion| companion.name.eq_ignore_ascii_case(asked));
+        found.map(|companion| companion.bytes.clone())
+    };
+    let mesh = crate::mesh::load(&file.name, &file.bytes, &find).map_err(|error| error.to_string())?.mesh;
     let mesh_from_file = DMat4::from_cols_array_2d(mesh_from_file).transpose();
     if mesh_from_file == DMat4::IDENTITY {
-        return Ok(asset.mesh);
+        return Ok(mesh);
     }
     // Another matrix than these would give numbers that are none.
     MeshFrame::checked(mesh_from_file).map_err(|error| error.to_string())?;
-    asset.mesh.transformed(&DAffine3::from_mat4(mesh_from_file)).map_err(|error| error.to_string())
+    mesh.transformed(&DAffine3::from_mat4(mesh_from_file)).map_err(|error| error.to_string())
 }
 
 /// What a JSON file says it is; empty where it says nothing, `None` for other files.

@@ -166,7 +166,7 @@ impl AnalysisJob {
     fn trial_errors(&self, participant: usize, trial: usize) -> Option<TrialErrors> {
         let &Trial { sample, condition, repeat, pose, seconds, .. } = self.trial(participant, trial)?;
         let truth = self.analysis.samples.get(sample)?.truth;
-        let errors = self.model(sample)?.difference(&pose, &truth);
+        let errors = self.model(sample)?.errors(&pose, &truth);
         let (is_best, is_kept) = (false, false);
         Some(TrialErrors { participant, trial, sample, condition, repeat, seconds, errors, is_best, is_kept })
     }
@@ -256,8 +256,79 @@ fn ring_pairs(count: usize) -> Vec<[usize; 2]> {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+    use std::sync::Arc;
+
+    use glam::DVec3;
 
     use super::*;
+    use crate::math::Pose;
+    use crate::mesh::test_shapes;
+    use crate::scene::Symmetries;
+    use crate::study::report::{Measure, ReportCondition, ReportSample, Rows};
+
+    /// Three people who pose two cubes three times, the third time best and the first time worst.
+    fn input() -> ReportInput {
+        let mesh = Arc::new(test_shapes::cube());
+        let sample = |at: u32| ReportSample {
+            label: format!("S{at}"),
+            set: 0,
+            name: "cube".to_owned(),
+            mesh: mesh.clone(),
+            symmetries: Symmetries::default(),
+            truth: Pose::from_translation(DVec3::new(0.0, f64::from(at), 500.0)),
+            view: None,
+        };
+        let samples = vec![sample(0), sample(1)];
+        let person = |number: usize| {
+            let trial = |at: usize| {
+                let (sample, repeat) = (at % 2, at / 2);
+                let offset_mm = DVec3::X * (10 * number + 3 - repeat) as f64;
+                let pose = samples[sample].truth.translated(offset_mm);
+                Trial { sample, condition: 0, repeat, pose, seconds: 10.0, timed_out: false }
+            };
+            ReportParticipant { trials: (0..6).map(trial).collect(), ..ReportParticipant::default() }
+        };
+        ReportInput {
+            sets: vec![String::new()],
+            conditions: vec![ReportCondition { id: "all".to_owned(), title: "All".to_owned() }],
+            participants: (0..3).map(person).collect(),
+            samples,
+            ..ReportInput::default()
+        }
+    }
+
+    #[test]
+    fn a_page_may_draw_after_every_comparison() {
+        let mut job = AnalysisJob::new(input(), ReportOptions::default());
+        let mut parts = Vec::new();
+        let analysis = loop {
+            match job.step(&mut || false) {
+                ReportProgress::Working(part) => parts.push(part),
+                ReportProgress::Done(analysis) => break analysis,
+            }
+        };
+        // Two models, 18 trials, three pairs of each person's repeats of a sample, three pairs of people for a sample.
+        assert!(parts.len() >= 2 + 18 + 18 + 6, "{}", parts.len());
+        assert!(parts.is_sorted() && parts.iter().all(|part| (0.0..=1.0).contains(part)), "{parts:?}");
+        let counts = [analysis.trials.len(), analysis.pairs.len(), analysis.agreement.len()];
+        assert_eq!(counts, [18, 18, 6]);
+        let at_once = AnalysisJob::new(input(), ReportOptions::default()).run();
+        assert_eq!((&at_once.trials, &at_once.pairs), (&analysis.trials, &analysis.pairs));
+    }
+
+    #[test]
+    fn the_third_trials_are_best_and_the_worst_tenth_is_not_kept() {
+        let analysis = AnalysisJob::new(input(), ReportOptions::default()).run();
+        let best: Vec<&TrialErrors> = analysis.best_of_set(0, Rows::All).collect();
+        assert!(best.len() == 6 && best.iter().all(|row| row.repeat == 2));
+        let add = |row: &&TrialErrors| row.errors.get(Measure::Add);
+        // The offsets are 1, 11 and 21 mm; five of six rows are kept.
+        assert!((best.iter().map(add).sum::<f64>() - 66.0).abs() < 1e-9);
+        let kept: Vec<&TrialErrors> = analysis.best_of_set(0, Rows::Best90).collect();
+        assert!(kept.len() == 5 && (kept.iter().map(add).sum::<f64>() - 45.0).abs() < 1e-9);
+        assert_eq!(analysis.pairs_of(1, 0, Rows::Best90).count(), 5);
+        assert!(analysis.agreement.iter().all(|row| row.differences.get(Measure::Add) > 9.9));
+    }
 
     #[test]
     fn everybody_meets_as_many_others() {

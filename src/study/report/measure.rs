@@ -44,16 +44,10 @@ impl Measure {
     /// Those of the paper.
     pub const PAPER: [Self; 3] = [Self::Rotation, Self::Translation, Self::Add];
 
-    /// Those that have a meaning between two poses of which neither is the truth.
-    pub const BETWEEN: [Self; 7] = [
-        Self::Rotation,
-        Self::Translation,
-        Self::Add,
-        Self::AddShare,
-        Self::SymmetricRotation,
-        Self::Ad,
-        Self::Mssd,
-    ];
+    /// Those that have a meaning between two poses of which neither is the truth. AD has none: ADI is another from the one
+    /// pose to the other than back.
+    pub const BETWEEN: [Self; 6] =
+        [Self::Rotation, Self::Translation, Self::Add, Self::AddShare, Self::SymmetricRotation, Self::Mssd];
 
     /// A column's name, without the unit.
     pub fn name(self) -> &'static str {
@@ -110,13 +104,21 @@ impl Model {
         self.diameter_mm
     }
 
-    /// From a pose to a reference; both are `camera_from_object`.
+    /// From a pose to the truth; both are `camera_from_object`.
+    pub fn errors(&self, pose: &Pose, truth: &Pose) -> Difference {
+        let mut errors = self.difference(pose, truth);
+        if let Some(tree) = &self.tree {
+            errors.0[Measure::Ad as usize] = adi_mm(pose, truth, &self.mesh, tree);
+        }
+        errors
+    }
+
+    /// Between two poses, neither of them the truth: in place of AD there is ADD.
     pub fn difference(&self, pose: &Pose, reference: &Pose) -> Difference {
         let plain = PoseError::between(pose, reference, &self.mesh, usize::MAX);
         let center = self.mesh.bounds().center();
         let depth_mm = pose.transform_point(center).z - reference.transform_point(center).z;
         let angles = self.symmetries.iter().map(|symmetry| pose.angle_to(&(*reference * *symmetry)));
-        let ad_mm = self.tree.as_ref().map_or(plain.add_mm, |tree| adi_mm(pose, reference, &self.mesh, tree));
         Difference([
             plain.rotation_rad.to_degrees(),
             plain.translation_mm,
@@ -125,7 +127,7 @@ impl Model {
             100.0 * plain.add_mm / self.diameter_mm.max(f64::MIN_POSITIVE),
             depth_mm,
             angles.fold(f64::INFINITY, f64::min).to_degrees(),
-            ad_mm,
+            plain.add_mm,
             mssd_mm(pose, reference, &self.mesh, &self.symmetries),
         ])
     }
@@ -151,7 +153,7 @@ mod tests {
             view: None,
         };
         let pose = sample.truth.translated(DVec3::Z * 2.0) * Pose::exp(DVec3::Z * 1.5, DVec3::ZERO);
-        let plain = Model::new(&sample).unwrap().difference(&pose, &sample.truth);
+        let plain = Model::new(&sample).unwrap().errors(&pose, &sample.truth);
         assert_eq!(plain.get(Measure::Rotation), plain.get(Measure::SymmetricRotation));
         assert_eq!(plain.get(Measure::Add), plain.get(Measure::Ad));
         assert!((plain.get(Measure::Rotation) - 1.5_f64.to_degrees()).abs() < 1e-9);
@@ -162,12 +164,12 @@ mod tests {
 
         let axis = ContinuousSymmetry { axis: DVec3::Z, offset_mm: DVec3::ZERO };
         sample.symmetries = Symmetries { discrete: Vec::new(), continuous: vec![axis] };
-        let found = Model::new(&sample).unwrap().difference(&pose, &sample.truth);
+        let found = Model::new(&sample).unwrap().errors(&pose, &sample.truth);
         assert_eq!(found.get(Measure::Add), plain.get(Measure::Add));
         // Turns are sampled at 315 per turn: at most half of 1.15 degrees is left.
         assert!(found.get(Measure::SymmetricRotation) < 0.58);
         assert!(found.get(Measure::Ad) < plain.get(Measure::Add) && found.get(Measure::Mssd) < 2.1);
-        let itself = Model::new(&sample).unwrap().difference(&pose, &pose);
+        let itself = Model::new(&sample).unwrap().errors(&pose, &pose);
         assert!(Measure::ALL.iter().all(|measure| itself.get(*measure) == 0.0));
     }
 }

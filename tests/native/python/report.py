@@ -18,7 +18,7 @@ import numpy as np
 FOLDER = pathlib.Path(sys.argv[1])
 MARGIN_PERCENT, MARGIN_DEG, SEED = float(sys.argv[2]), float(sys.argv[3]), int(sys.argv[4])
 ALL = ["rotation", "translation", "add", "share", "depth", "rotation_sym", "ad", "mssd"]
-BETWEEN = [name for name in ALL if name != "depth"]
+BETWEEN = [name for name in ALL if name not in ("depth", "ad")]
 KINDS = [("best 90 %", True), ("100 %", False)]
 
 

@@ -2,7 +2,7 @@
 
 use super::super::statistics::mean;
 use super::{
-    Analysis, Cell, Column, Difference, KEPT, Measure, Rows, SYMMETRIC, Table, columns_of, row_labels,
+    AD, Analysis, Cell, Column, Difference, KEPT, Measure, Rows, SYMMETRIC, Table, columns_of, row_labels,
     set_name, spread_cell, spreads, table,
 };
 
@@ -21,7 +21,7 @@ pub(super) fn inter(analysis: &Analysis) -> Table {
     columns.extend(columns_of(&Measure::ALL));
     let note = format!(
         "Each person's best trial of each sample by ADD against the truth; mean ± SD (population, ddof 0) over persons and \
-         samples. {KEPT}. {SYMMETRIC}. Depth is signed: positive where the pose is too far"
+         samples. {KEPT}. {SYMMETRIC}. {AD}. Depth is signed: positive where the pose is too far"
     );
     table(
         "inter-personal",
@@ -52,7 +52,7 @@ pub(super) fn inter_by_sample(analysis: &Analysis) -> Table {
     let mut columns = ["set", "sample", "object in photo", "rows"].map(Column::plain).to_vec();
     columns.extend([Column::number("diameter", "mm", 1), Column::plain("n")]);
     columns.extend(columns_of(&Measure::ALL));
-    let note = format!("As Table 1, sample by sample, over persons. {KEPT}");
+    let note = format!("As the inter-personal errors of all, sample by sample, over persons. {KEPT}");
     table("inter-by-sample", "Inter-personal errors by sample", note, columns, rows)
 }
 
@@ -71,7 +71,7 @@ pub(super) fn inter_by_person(analysis: &Analysis) -> Table {
     }
     let mut columns = ["set", "person", "rows", "n"].map(Column::plain).to_vec();
     columns.extend(columns_of(&Measure::ALL));
-    let note = format!("As Table 1, person by person, over samples. {KEPT}");
+    let note = format!("As the inter-personal errors of all, person by person, over samples. {KEPT}");
     table("inter-by-person", "Inter-personal errors by person", note, columns, rows)
 }
 
@@ -117,7 +117,7 @@ pub(super) fn intra_by_person(analysis: &Analysis) -> Table {
     }
     let mut columns = ["set", "person", "rows", "pairs"].map(Column::plain).to_vec();
     columns.extend(columns_of(&Measure::BETWEEN));
-    let note = "As Table 2, person by person: mean ± SD (ddof 0) over the person's pairs".to_owned();
+    let note = "As the intra-personal differences of all, person by person: mean ± SD (ddof 0) over the person's pairs".to_owned();
     table("intra-by-person", "Intra-personal differences by person", note, columns, rows)
 }
 

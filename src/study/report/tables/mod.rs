@@ -43,8 +43,11 @@ const KEPT: &str = "Best 90 %: the floor(0.9 n) rows of a set with the lowest AD
     paper says only that the best 90 % were kept";
 
 /// What the symmetric measures are, in words.
-const SYMMETRIC: &str = "Rotation (sym.): the smallest angle over the object's symmetries. AD: ADI (ADD-S) for an object \
-    with symmetries, ADD for any other. MSSD: the largest vertex distance, least over the symmetries";
+const SYMMETRIC: &str = "Rotation (sym.): the smallest angle over the object's symmetries. MSSD: the largest vertex distance, least \
+    over the symmetries";
+
+/// And the one that only truth has.
+const AD: &str = "AD: ADI (ADD-S) for an object with symmetries, ADD for any other";
 
 /// One column per measure.
 fn columns_of(measures: &[Measure]) -> impl Iterator<Item = Column> {
