@@ -19,6 +19,8 @@ impl PinPose {
             }
             Effect::ExportPicture(request) => self.export(request),
             Effect::Snap { photo, object, reach } => self.start_snap(photo, object, reach),
+            Effect::ShowExampleStudy => self.fetch_example_study(),
+            Effect::PickResults => self.pick_results(),
             Effect::CopyText(text) => self.ctx.copy_text(text),
             Effect::NewScene => self.new_scene(),
             Effect::ShowScenes => self.show_scenes(),
@@ -31,6 +33,7 @@ impl PinPose {
             Effect::Notify(notice) => self.notify(notice),
             Effect::AskForPose
             | Effect::AskForExport
+            | Effect::BuildStudy
             | Effect::TogglePalette
             | Effect::ToggleShortcuts
             | Effect::TogglePanels

@@ -5,6 +5,7 @@
 
 mod answers;
 mod autosave;
+mod building;
 mod datasets;
 mod depth_maps;
 mod effects;
@@ -55,6 +56,7 @@ pub struct PinPose {
     depth_maps: depth_maps::DepthMaps,
     exporting: exporting::Exporting,
     snapping: snapping::Snapping,
+    building: building::Building,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
@@ -105,6 +107,7 @@ impl PinPose {
             depth_maps: depth_maps::DepthMaps::default(),
             exporting: exporting::Exporting::default(),
             snapping: snapping::Snapping::default(),
+            building: building::Building::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
@@ -164,6 +167,7 @@ impl eframe::App for PinPose {
         self.make_pictures(ctx);
         self.tick_export();
         self.tick_snap();
+        self.tick_building();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
@@ -195,6 +199,7 @@ impl eframe::App for PinPose {
                 usage: self.scenes.usage(),
                 now_ms: platform::now_ms(),
             },
+            builder: Some(self.building.view()),
             update_ready: platform::update_offer().is_some(),
             dataset: self.datasets.view(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
@@ -212,6 +217,9 @@ impl eframe::App for PinPose {
         }
         if let Some(request) = asked.export {
             self.start_export(request);
+        }
+        if let Some(build) = asked.study_build {
+            self.start_building(build);
         }
         self.place_views();
         if let Some(moved) = asked.scene_move {

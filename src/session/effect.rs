@@ -28,6 +28,11 @@ pub enum Effect {
     /// The clipboard can be read in answer to a key alone; else the user is given a field to paste into.
     AskForPose,
     AskForExport,
+    BuildStudy,
+    /// The example study, as its participants see it.
+    ShowExampleStudy,
+    /// A study and a participant's results, to be watched.
+    PickResults,
     NewScene,
     ShowScenes,
     SaveNow,

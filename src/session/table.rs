@@ -11,6 +11,7 @@ pub enum Menu {
     Edit,
     View,
     Pose,
+    Study,
     Help,
     /// In no menu: a key alone.
     Keys,
@@ -174,6 +175,9 @@ commands![
     (Select7, "select_7", Keys, "Select object 7", "Select the seventh object of this photo", key("7"), needs_objects_here),
     (Select8, "select_8", Keys, "Select object 8", "Select the eighth object of this photo", key("8"), needs_objects_here),
     (Select9, "select_9", Keys, "Select object 9", "Select the ninth object of this photo", key("9"), needs_objects_here),
+    (BuildStudy, "build_study", Study, "Build a study…", "Choose samples, texts, tools and questions; export a folder for participants", None, needs_content),
+    (WatchTrial, "watch_trial", Study, "Watch a trial…", "Choose a study's zip and a participant's results, and watch what was done", None, always),
+    (ExampleStudy, "example_study", Study, "Try the example study", "See a study as its participants do", None, always),
     (TogglePalette, "palette", Help, "Find a command…", "Every command by its name", ctrl("K"), always),
     (ToggleShortcuts, "shortcuts", Help, "Mouse and keys", "All gestures and keys on one sheet", key("?"), always),
     (Cancel, "cancel", Edit, "Cancel", "Put back the drag that is under way", key("Escape"), always),

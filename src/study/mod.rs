@@ -15,6 +15,7 @@ pub mod paper;
 mod protocol;
 pub mod questionnaire;
 mod record;
+mod replay;
 pub mod report;
 mod results;
 mod schedule;
@@ -34,6 +35,7 @@ pub use protocol::{
     SampleSets, Saving, Schedule, StartPose, Study, StudyObject, StudyPhoto, Texts, Tool, TrialOrder,
 };
 pub use record::{PoseRecord, SymmetriesRecord};
+pub use replay::Replay;
 pub use results::{
     Answer, AnswerValue, Environment, Feedback, FileRecord, Outcome, PairChoice, Participant, Pause,
     PauseKind, PracticeResult, QuestionnaireResult, RESULTS_SCHEMA, Results, StudyRecord, TrialResult,

@@ -107,20 +107,57 @@ impl Draft {
 
     /// The study's files. Errors name what is missing, in words for the researcher; see [`super::check`] for all of it at once.
     pub fn pack(&self, scene: &Scene) -> Result<Pack, StudyError> {
-        let mut packer = Packer::new(scene, self);
-        for chosen in self.chosen.iter().filter(|chosen| chosen.role != Role::None) {
-            packer.add(chosen)?;
+        let mut packing = self.start_packing(scene);
+        loop {
+            if let Some(pack) = packing.step()? {
+                return Ok(pack);
+            }
         }
-        for (name, bytes) in &self.pictures {
-            packer.add_picture(name, bytes)?;
-        }
-        Ok(packer.finish())
+    }
+
+    /// The same a sample at a time, for pictures take a moment each.
+    pub fn start_packing(&self, scene: &Scene) -> Packing {
+        Packing { packer: Packer::new(scene.clone(), self.clone()), next: 0 }
     }
 }
 
-struct Packer<'a> {
-    scene: &'a Scene,
-    draft: &'a Draft,
+/// A study on its way into its files.
+#[derive(Debug)]
+pub struct Packing {
+    packer: Packer,
+    /// The sample, or after them the picture, that is next.
+    next: usize,
+}
+
+impl Packing {
+    /// How much is done, of how much.
+    pub fn progress(&self) -> (usize, usize) {
+        let draft = &self.packer.draft;
+        (self.next, draft.chosen.len() + draft.pictures.len())
+    }
+
+    /// Packs what is next; the files once there is no more.
+    pub fn step(&mut self) -> Result<Option<Pack>, StudyError> {
+        let place = self.next;
+        self.next += 1;
+        if let Some(chosen) = self.packer.draft.chosen.get(place).cloned() {
+            if chosen.role != Role::None {
+                self.packer.add(&chosen)?;
+            }
+            return Ok(None);
+        }
+        let picture = self.packer.draft.pictures.get(place - self.packer.draft.chosen.len()).cloned();
+        match picture {
+            Some((name, bytes)) => self.packer.add_picture(&name, &bytes).map(|()| None),
+            None => Ok(Some(self.packer.finish())),
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Packer {
+    scene: Scene,
+    draft: Draft,
     study: Study,
     files: BTreeMap<String, Arc<[u8]>>,
     truth: Vec<TruthSample>,
@@ -128,8 +165,8 @@ struct Packer<'a> {
     diameters: BTreeMap<ObjectId, f64>,
 }
 
-impl<'a> Packer<'a> {
-    fn new(scene: &'a Scene, draft: &'a Draft) -> Self {
+impl Packer {
+    fn new(scene: Scene, draft: Draft) -> Self {
         let mut study = draft.study.clone();
         (study.photos, study.objects, study.samples, study.practice) = Default::default();
         study.texts.pictures = Vec::new();
@@ -137,11 +174,12 @@ impl<'a> Packer<'a> {
     }
 
     fn add(&mut self, chosen: &Chosen) -> Result<(), StudyError> {
-        let (Some(photo), Some(object)) = (self.scene.photo(chosen.photo), self.scene.object(chosen.object))
+        let (Some(photo), Some(object)) =
+            (self.scene.photo(chosen.photo).cloned(), self.scene.object(chosen.object).cloned())
         else {
             return Err(StudyError::Pack("a chosen photo or object is no longer in the scene".to_owned()));
         };
-        let pose = self.draft.truth_of(self.scene, chosen);
+        let pose = self.draft.truth_of(&self.scene, chosen);
         let start = match self.draft.truth_from {
             TruthFrom::Annotations => None,
             TruthFrom::Reference(_) => self
@@ -152,17 +190,17 @@ impl<'a> Packer<'a> {
         };
         let sample = Sample {
             id: String::new(),
-            photo: self.photo(photo)?,
-            object: self.object(object),
+            photo: self.photo(&photo)?,
+            object: self.object(&object),
             set: chosen.set.clone(),
             start: start.filter(|_| self.draft.study.start_pose == super::StartPose::Given),
         };
         if chosen.role == Role::Practice {
-            return self.add_practice(sample, pose, photo);
+            return self.add_practice(sample, pose, &photo);
         }
         // Ids say nothing of what is in a photo.
         let sample = Sample { id: format!("S{}", self.study.samples.len()), ..sample };
-        let truth = self.truth_sample(&sample, pose, object)?;
+        let truth = self.truth_sample(&sample, pose, &object)?;
         self.truth.push(truth);
         self.study.samples.push(sample);
         Ok(())
@@ -267,12 +305,13 @@ impl<'a> Packer<'a> {
         })
     }
 
-    fn finish(self) -> Pack {
+    fn finish(&mut self) -> Pack {
         let json = self.study.to_json();
-        let truth = Truth::new(&self.study.id, &Sha256::of(json.as_bytes()).to_string(), self.truth);
+        let version = Sha256::of(json.as_bytes()).to_string();
+        let truth = Truth::new(&self.study.id, &version, std::mem::take(&mut self.truth));
         let study_file = (STUDY_NAME.to_owned(), Arc::from(json.into_bytes()));
-        let files = std::iter::once(study_file).chain(self.files).collect();
-        Pack { study: self.study, files, truth }
+        let files = std::iter::once(study_file).chain(std::mem::take(&mut self.files)).collect();
+        Pack { study: self.study.clone(), files, truth }
     }
 }
 

@@ -16,7 +16,7 @@ pub struct MenuPlan {
 }
 
 /// Every command of the table, but those that are keys alone.
-pub const MENUS: [MenuPlan; 5] = [
+pub const MENUS: [MenuPlan; 6] = [
     MenuPlan {
         title: "File",
         groups: &[
@@ -100,6 +100,10 @@ pub const MENUS: [MenuPlan; 5] = [
             ],
             NUDGES,
         ],
+    },
+    MenuPlan {
+        title: "Study",
+        groups: &[&[CommandId::BuildStudy, CommandId::WatchTrial], &[CommandId::ExampleStudy]],
     },
     MenuPlan { title: "Help", groups: &[&[CommandId::TogglePalette, CommandId::ToggleShortcuts]] },
 ];

@@ -16,6 +16,7 @@ mod shortcuts;
 mod shortcuts_sheet;
 mod strip;
 pub mod study;
+mod study_builder;
 mod theme;
 mod thumbnails;
 mod toasts;
@@ -37,6 +38,7 @@ pub use keymap::{Binding, Keymap, Refusal};
 pub use preferences::{DragModifier, ModifierKey, ModifierMap, Preferences, ThemeChoice};
 pub use scenes_dialog::SceneRequest;
 pub use shortcuts::{Pressed, is_released, pressed_commands, shortcut_text};
+pub use study_builder::{BuilderView, StudyBuild};
 pub use theme::apply_theme;
 pub use thumbnails::{MOST_SIDE_PX as THUMBNAIL_SIDE_PX, Thumbnails};
 pub use toasts::{Offer, Toasts};
@@ -64,6 +66,7 @@ pub struct UiState {
     pub viewport: Option<ViewportPlace>,
     pub scene_viewport: Option<ViewportPlace>,
     split: viewport::SplitState,
+    pub study_builder: study_builder::State,
     /// Of the study that somebody takes part in.
     pub study: study::State,
 }
@@ -96,6 +99,7 @@ impl UiState {
     pub fn take_effect(&mut self, effect: Effect, ctx: &egui::Context) -> Option<Effect> {
         match effect {
             Effect::AskForExport => self.open = Some(Dialog::Export),
+            Effect::BuildStudy => self.study_builder.show(),
             Effect::AskForPose => self.open = Some(Dialog::PastePose),
             Effect::TogglePalette => self.toggle(Dialog::Palette),
             Effect::ToggleShortcuts => self.toggle(Dialog::Shortcuts),
@@ -131,6 +135,8 @@ pub struct Surroundings<'a> {
     /// The scenes that are stored, the one that was changed last first.
     pub scenes: &'a [SceneSummary],
     pub store: StoreView<'a>,
+    /// What is known of the study that is being built.
+    pub builder: Option<BuilderView<'a>>,
 }
 
 impl Surroundings<'_> {
@@ -176,6 +182,7 @@ pub struct Asked {
     pub apply_update: bool,
     pub cancel_loading: bool,
     pub export: Option<ExportRequest>,
+    pub study_build: Option<StudyBuild>,
 }
 
 /// Draws a whole frame.
@@ -218,6 +225,7 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     if let Some(dataset) = &around.dataset {
         dataset_dialog::draw(ui.ctx(), dataset, &mut asked.dataset_requests);
     }
+    study_builder::draw(ui.ctx(), session, around.builder.as_ref(), &mut state.study_builder, &mut asked);
     scenes_dialog::draw(ui.ctx(), around, &mut state.scenes_dialog, &mut asked.scene_requests);
     match state.toasts.draw(ui.ctx()) {
         Some(Offer::Workspace) => asked.commands.push(Command::Run(CommandId::ExportWorkspace)),

@@ -33,6 +33,8 @@ mod scenes_dialog;
 mod scripts;
 mod shaders;
 mod storage;
+mod studies;
+mod study_flow;
 mod support;
 
 use support::data_folder;

@@ -21,6 +21,7 @@ pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
         depth: None,
         saving: Saving::Saved,
         busy: None,
+        builder: None,
         update_ready: false,
         files_hover: false,
         dataset: None,

@@ -19,8 +19,8 @@ impl PinPose {
         if self.is_trial_on_screen() {
             self.take_study_keys(ctx);
             self.take_gestures(ctx);
-            self.want_pixels();
         }
+        self.want_pixels();
         self.make_pictures(ctx);
         self.tick_snap();
     }
@@ -39,6 +39,7 @@ impl PinPose {
             busy: None,
             scenes: &[],
             store: ui::StoreView::default(),
+            builder: None,
             update_ready: false,
             dataset: None,
             files_hover: false,

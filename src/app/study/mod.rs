@@ -8,6 +8,7 @@ mod requests;
 mod sending;
 mod trial;
 mod view;
+mod watching;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
@@ -26,6 +27,7 @@ use arriving::Arrived;
 use keeping::Keeping;
 pub use keeping::is_kept_id;
 use sending::Sender;
+pub use watching::Picked;
 
 /// A study that somebody takes part in, from its address to the way out.
 pub struct Participating {
@@ -43,6 +45,8 @@ pub struct Participating {
     backend: String,
     /// What the researcher had open, to come back to after a preview.
     before: Option<Box<Session>>,
+    /// Results that are to be watched.
+    watched: Option<crate::study::Results>,
 }
 
 /// What a participant's address says.
@@ -66,6 +70,7 @@ enum State {
         participant: Participant,
     },
     Running(Box<Running>),
+    Watching(Box<watching::Watching>),
 }
 
 /// A study with all of its files read.
@@ -132,6 +137,7 @@ impl PinPose {
             visibility,
             backend: self.backend.clone(),
             before: None,
+            watched: None,
         }
     }
 
@@ -150,6 +156,7 @@ impl PinPose {
         }
         self.study = Some(study);
         self.tick_trial(now_ms);
+        self.tick_watching(now_ms);
         if let Some(study) = &mut self.study
             && let State::Running(running) = &mut study.state
         {
@@ -167,6 +174,13 @@ impl PinPose {
         match (&mut study.state, request) {
             (State::AskId(_), StudyRequest::Id(id)) => study.look_back(&id),
             (State::Problem { .. }, StudyRequest::Retry) => study.fetch_study(),
+            (State::Watching(watching), request) => {
+                let done = watching.take_request(&request, now_ms);
+                if let Err(problem) = done {
+                    self.notify(crate::session::Notice::error(problem));
+                }
+                return;
+            }
             (State::Running(running), request) => {
                 if let Err(problem) = running.take_request(&request, &study.ctx, now_ms) {
                     self.notify(crate::session::Notice::error(problem));
@@ -204,6 +218,9 @@ impl Participating {
     /// All files are here: the participant is known from the link, or asked for.
     fn begin(&mut self, ready: Ready) {
         self.show_pictures(&ready);
+        if let Some(results) = self.watched.take() {
+            return self.watch(ready, results);
+        }
         let named = |name: &String| platform::page_parameter(name).filter(|id| !id.trim().is_empty());
         let id = match self.link {
             Some(_) => ready.files.study.parameters.participant.iter().find_map(named),

@@ -10,6 +10,7 @@ impl Participating {
         let study = match &self.state {
             State::Running(running) => Some(&running.ready.files.study),
             State::AskId(ready) | State::LookingBack { ready, .. } => Some(&ready.files.study),
+            State::Watching(watching) => Some(watching.study()),
             State::Loading(_) | State::Problem { .. } => None,
         };
         let screen = match &self.state {
@@ -21,6 +22,7 @@ impl Participating {
             State::Problem { text, can_retry } => StudyScreen::Problem { text, can_retry: *can_retry },
             State::AskId(_) => StudyScreen::AskId,
             State::Running(running) => running.screen(busy),
+            State::Watching(watching) => StudyScreen::Replay(watching.view()),
         };
         StudyView {
             title: study.map_or("", |study| &study.title),
@@ -49,6 +51,7 @@ impl Participating {
             StudyScreen::Rest { .. } => "rest",
             StudyScreen::Questionnaire { .. } => "questionnaire",
             StudyScreen::Finish(_) => "finish",
+            StudyScreen::Replay(_) => "replay",
         }
     }
 }

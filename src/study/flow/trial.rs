@@ -83,6 +83,10 @@ impl RunningTrial {
         self.clock.is_some_and(|clock| clock.is_paused())
     }
 
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
     /// Was anything done to the pose?
     pub fn has_gesture(&self) -> bool {
         self.events.iter().any(|event| event.kind.is_gesture())

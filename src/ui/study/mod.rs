@@ -6,6 +6,7 @@ mod page;
 mod practice;
 mod questionnaire;
 mod questions;
+mod replay;
 mod text;
 mod trial;
 
@@ -19,6 +20,7 @@ use crate::study::questionnaire::TlxScale;
 use crate::study::{Answer, AnswerValue, Condition, Feedback, Item, PairChoice, Questionnaire, Tool};
 
 pub use finish::{FinishView, Sending};
+pub use replay::ReplayView;
 pub use text::Pictures;
 pub use trial::TrialView;
 
@@ -72,6 +74,7 @@ pub enum StudyScreen<'a> {
         pairs: &'a [TlxPair],
     },
     Finish(FinishView<'a>),
+    Replay(ReplayView<'a>),
 }
 
 pub type TlxPair = (&'static TlxScale, &'static TlxScale);
@@ -113,6 +116,11 @@ pub enum StudyRequest {
     Forget,
     /// A researcher has seen enough.
     LeavePreview,
+    WatchTrial(usize),
+    Play(bool),
+    /// Milliseconds since the trial was shown.
+    PlayAt(f64),
+    Speed(f64),
 }
 
 /// What is typed and chosen, until it is sent on.
@@ -168,6 +176,15 @@ pub fn draw(
         if state.study.help_is_open {
             state.study.help_is_open = trial::help(ui.ctx(), view, trial);
         }
+    } else if let StudyScreen::Replay(replay) = &view.screen {
+        let visuals = ui.ctx().global_style().visuals.clone();
+        Panel::top("replay bar").frame(theme::bar_frame(&visuals)).show(ui, |ui| {
+            replay::bar(ui, replay, requests);
+        });
+        CentralPanel::default().frame(Frame::NONE.fill(theme::VIEWPORT_BACKGROUND)).show(ui, |ui| {
+            theme::use_dark(ui);
+            viewport::draw_for_study(ui, session, around, state, &mut asked, &[]);
+        });
     } else {
         (state.viewport, state.scene_viewport) = (None, None);
         let fill = ui.visuals().panel_fill;

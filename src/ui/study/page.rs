@@ -92,7 +92,7 @@ fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut V
         }
         StudyScreen::Finish(finish) => finish::draw(ui, view, &finish, requests),
         // Drawn with the viewport.
-        StudyScreen::Trial(_) => {}
+        StudyScreen::Trial(_) | StudyScreen::Replay(_) => {}
     }
 }
 
