@@ -62,9 +62,9 @@ fn abstract_of(analysis: &Analysis) -> String {
         let best: Vec<&TrialErrors> = analysis.best_of_set(set, Rows::All).collect();
         let adds: Vec<f64> = best.iter().map(|row| row.errors.get(Measure::Add)).collect();
         let Some(spread) = super::Spread::of(&adds) else { continue };
-        let name = if name.is_empty() { String::new() } else { format!("{}: ", html_text(name)) };
+        let name = if name.is_empty() { "Mean".to_owned() } else { format!("{}: mean", html_text(name)) };
         text += &format!(
-            "{name}mean ADD of the best trials {:.2} ± {:.2} mm (median {:.2} mm, n = {}, all rows). ",
+            "{name} ADD of the best trials {:.2} ± {:.2} mm (median {:.2} mm, n = {}, all rows). ",
             spread.mean, spread.standard_deviation, spread.median, spread.count
         );
     }
