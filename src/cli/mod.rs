@@ -1,5 +1,6 @@
 //! The command line: one file per verb. Exit code 0 done, 1 bad input (one line on stderr per problem), 2 bad usage.
 
+mod build_study;
 mod convert;
 mod draw;
 mod evaluate;
@@ -7,6 +8,8 @@ mod inspect;
 mod open;
 mod pins;
 mod render;
+mod report;
+mod simulate_study;
 mod snap;
 mod source;
 
@@ -32,7 +35,14 @@ pinpose evaluate --truth T POSES… [--json | --csv]
 pinpose pins FILE                    2D-3D pairs and a camera (JSON) to a pose, residuals and covariance
 pinpose snap IN… [--photo NAME]… [--out POSES.json] [--json]
         refine every pose to its photo; scores, poses and covariances
---mesh-unit mm|cm|m|in               with convert, render, evaluate and snap: of meshes that do not say theirs
+pinpose build-study IN… --out FOLDER [--protocol paper] [--id ID] [--title TITLE]
+        photos, meshes and true poses as a study: FOLDER/study for a web host, FOLDER/truth.json for you
+pinpose simulate-study STUDY --participants N --out FOLDER [--seed S] [--truth T]
+        result files of participants that are a program, to see a report before a study runs
+pinpose report RESULTS… --truth T --out FOLDER [--margin PERCENT] [--margin-deg DEGREES] [--seed S]
+        [--no-pictures] [--no-png] [--json]
+        a page, tables (CSV, LaTeX) and figures (SVG, PNG); T is a study's truth.json, with its assets beside it
+--mesh-unit mm|cm|m|in               with convert, render, evaluate, snap and build-study: of meshes that do not say theirs
 pinpose --help | --version
 ";
 
@@ -57,7 +67,7 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
     let first = match parser.next() {
         Ok(None) => return None,
         Ok(Some(argument)) => argument,
-        Err(error) => return Some(report(Err(error.into()))),
+        Err(error) => return Some(exit_code(Err(error.into()))),
     };
     let outcome = match first {
         lexopt::Arg::Long("help") | lexopt::Arg::Short('h') => {
@@ -70,19 +80,22 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> Option<ExitCode> {
         }
         lexopt::Arg::Value(verb) => match verb.to_str() {
             Some("inspect") => inspect::run(parser),
+            Some("build-study") => build_study::run(parser),
             Some("convert") => convert::run(parser),
             Some("evaluate") => evaluate::run(parser),
             Some("pins") => pins::run(parser),
             Some("render") => render::run(parser),
+            Some("report") => report::run(parser),
+            Some("simulate-study") => simulate_study::run(parser),
             Some("snap") => snap::run(parser),
             _ => Err(Failure::Usage(format!("there is no verb \"{}\"", verb.to_string_lossy()))),
         },
         other => Err(other.unexpected().into()),
     };
-    Some(report(outcome))
+    Some(exit_code(outcome))
 }
 
-fn report(outcome: Outcome) -> ExitCode {
+fn exit_code(outcome: Outcome) -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Input(problems)) => {
@@ -94,4 +107,10 @@ fn report(outcome: Outcome) -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The value of an option that counts.
+fn whole(parser: &mut lexopt::Parser) -> Result<u64, Failure> {
+    let text = parser.value()?.to_string_lossy().into_owned();
+    text.parse().map_err(|_| Failure::Usage(format!("\"{text}\" is no whole number")))
 }

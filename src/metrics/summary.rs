@@ -61,7 +61,9 @@ impl Statistics {
     }
 }
 
-fn quantile(sorted: &[f64], part: f64) -> f64 {
+/// The value below which the given part of some sorted numbers lies, between neighbours in proportion (NumPy's "linear").
+/// There has to be one number at least.
+pub fn quantile(sorted: &[f64], part: f64) -> f64 {
     let position = part * (sorted.len() - 1) as f64;
     let (low, high) = (position.floor() as usize, position.ceil() as usize);
     sorted[low] + (sorted[high] - sorted[low]) * (position - position.floor())

@@ -25,6 +25,8 @@ mod mesh_units;
 mod opening;
 mod panels;
 mod program;
+mod report;
+mod report_study;
 mod scene_view;
 mod scenes;
 mod scenes_dialog;

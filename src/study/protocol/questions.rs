@@ -30,9 +30,8 @@ pub enum ItemKind {
     },
 }
 
-/// A page of questions.
+/// A page of questions. (Unknown fields cannot be refused here: serde does not see which of them the kind takes.)
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Questionnaire {
     pub id: String,
     #[serde(default)]
