@@ -21,6 +21,7 @@ mod photo_cache;
 mod pictures;
 mod scenes;
 mod snapping;
+mod start;
 mod study;
 mod symmetry;
 mod thumbnails;
@@ -36,7 +37,7 @@ use crate::session::{Command, Notice, Session};
 use crate::ui::{self, SharedRenderer, UiState};
 
 pub use jobs::run_job;
-pub use scenes::StartWith;
+pub use start::StartWith;
 pub use study::Link as StudyLink;
 
 /// The whole program.
