@@ -146,7 +146,9 @@ fn snap_one(chance: &mut Chance, frame: &Frame, object: &Object) -> Run {
     let clock = cpu_secs();
     let outcome = Snap::new(&frame.photo, &frame.camera, object.model.clone(), &start, hints).run();
     let ms = (cpu_secs() - clock) * 1e3;
-    let error = |pose: &Pose| PoseError::between(pose, &object.truth, &object.mesh, &Symmetries::default(), usize::MAX);
+    let error = |pose: &Pose| {
+        PoseError::between(pose, &object.truth, &object.mesh, &Symmetries::default(), usize::MAX)
+    };
     let found = outcome.camera_from_object;
     Run {
         object: object.name.clone(),

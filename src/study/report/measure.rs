@@ -6,6 +6,7 @@ use super::ReportSample;
 use crate::math::Pose;
 use crate::mesh::{Mesh, PointTree};
 use crate::metrics::{PoseError, adi_mm, mssd_mm};
+use crate::scene::Symmetries;
 
 /// One of the numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,7 +116,7 @@ impl Model {
 
     /// Between two poses, neither of them the truth: in place of AD there is ADD.
     pub fn difference(&self, pose: &Pose, reference: &Pose) -> Difference {
-        let plain = PoseError::between(pose, reference, &self.mesh, usize::MAX);
+        let plain = PoseError::between(pose, reference, &self.mesh, &Symmetries::default(), usize::MAX);
         let center = self.mesh.bounds().center();
         let depth_mm = pose.transform_point(center).z - reference.transform_point(center).z;
         let angles = self.symmetries.iter().map(|symmetry| pose.angle_to(&(*reference * *symmetry)));
@@ -139,7 +140,7 @@ mod tests {
 
     use super::*;
     use crate::mesh::test_shapes;
-    use crate::scene::{ContinuousSymmetry, Symmetries};
+    use crate::scene::ContinuousSymmetry;
 
     #[test]
     fn symmetric_errors_forgive_a_turn_and_plain_ones_do_not() {
