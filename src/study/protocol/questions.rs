@@ -30,9 +30,8 @@ pub enum ItemKind {
     },
 }
 
-/// A page of questions.
+/// A page of questions. Its kind stands beside its id in the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Questionnaire {
     pub id: String,
     #[serde(default)]
