@@ -20,6 +20,7 @@ mod photo_cache;
 mod pictures;
 mod scenes;
 mod snapping;
+mod start;
 mod study;
 mod thumbnails;
 mod widgets;
@@ -34,7 +35,7 @@ use crate::session::{Command, Notice, Session};
 use crate::ui::{self, SharedRenderer, UiState};
 
 pub use jobs::run_job;
-pub use scenes::StartWith;
+pub use start::StartWith;
 pub use study::Link as StudyLink;
 
 /// The whole program.

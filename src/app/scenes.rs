@@ -8,6 +8,7 @@ use std::rc::Rc;
 
 use super::PinPose;
 use super::autosave::Finished;
+use super::start::StartWith;
 use crate::interact::Hands;
 use crate::platform::{
     self, Remains, Saved, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture, StorageUse,
@@ -67,16 +68,6 @@ enum Arrived {
     /// A scene was deleted: there may be room again.
     Deleted,
     Problem(String),
-}
-
-/// What the program opens first.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum StartWith {
-    LastOpen,
-    Example,
-    /// Somebody takes part in a study.
-    Study(super::StudyLink),
-    Nothing,
 }
 
 impl Scenes {

@@ -35,6 +35,7 @@ mod shaders;
 mod storage;
 mod studies;
 mod study_flow;
+mod study_screens;
 mod support;
 
 use support::data_folder;

@@ -90,6 +90,8 @@ struct Running {
     pairs: Vec<TlxPair>,
     keeping: Keeping,
     sender: Sender,
+    /// Why the sample that comes next cannot be shown.
+    problem: Option<String>,
     /// When the page goes on by itself.
     redirect_at_ms: Option<f64>,
 }
@@ -217,6 +219,9 @@ impl Participating {
 
     /// All files are here: the participant is known from the link, or asked for.
     fn begin(&mut self, ready: Ready) {
+        if let Some(problem) = self.cannot_work() {
+            return self.fail(problem, true);
+        }
         self.show_pictures(&ready);
         if let Some(results) = self.watched.take() {
             return self.watch(ready, results);
@@ -292,6 +297,7 @@ impl Participating {
             pairs: Vec::new(),
             keeping,
             sender,
+            problem: None,
             redirect_at_ms: None,
         };
         running.enter(now_ms);
@@ -310,6 +316,21 @@ impl Participating {
         let plan = plan.map_err(|error| error.to_string())?;
         let environment = self.environment();
         Ok(Participation::begin(ready.files.record(), plan, participant, environment, now_ms))
+    }
+
+    /// A plain sentence where this browser or window is no place for a study.
+    fn cannot_work(&self) -> Option<&'static str> {
+        // A narrower window has no room for the bar over a photo.
+        const LEAST: [u32; 2] = [640, 400];
+        let window = platform::browser_facts().window;
+        if cfg!(target_arch = "wasm32") && self.backend.is_empty() {
+            return Some("This browser cannot draw 3D pictures: WebGL 2 is off. Please try another browser.");
+        }
+        let is_known = window != [0, 0];
+        let is_small = window.iter().zip(LEAST).any(|(side, least)| *side < least);
+        (is_known && is_small).then_some(
+            "This window is too small. Please enlarge it, or open the link on a computer with a mouse or a touchpad.",
+        )
     }
 
     fn environment(&self) -> Environment {

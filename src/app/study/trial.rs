@@ -60,8 +60,7 @@ impl Running {
         if self.participation.feedback().is_none()
             && let Err(problem) = self.set_stage(now_ms)
         {
-            // The study was checked when it came: only a file that changed meanwhile ends here.
-            log::error!("{problem}");
+            self.problem = Some(format!("The next photo cannot be shown: {problem}."));
         }
         self.keeping.changed(&self.participation, now_ms);
     }

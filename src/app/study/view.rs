@@ -60,6 +60,9 @@ impl Running {
     fn screen<'a>(&'a self, busy: Option<&'a str>) -> StudyScreen<'a> {
         let study = &self.ready.files.study;
         let plan = &self.participation.plan;
+        if let Some(text) = &self.problem {
+            return StudyScreen::Problem { text, can_retry: false };
+        }
         if self.participation.has_declined() {
             return StudyScreen::Declined;
         }
@@ -146,7 +149,10 @@ impl Running {
             thanks: &study.texts.thanks,
             sending,
             code: study.completion.code.as_deref().filter(|_| self.sender.is_done()),
-            redirect_in: left_ms.map(|ms| (ms.clamp(0.0, 3.6e6) / 1000.0).ceil() as u32),
+            can_redirect: study.completion.redirect.is_some() && self.sender.is_done(),
+            redirect_in: left_ms
+                .filter(|ms| ms.is_finite())
+                .map(|ms| (ms.clamp(0.0, 3.6e6) / 1000.0).ceil() as u32),
             is_kept_here: self.keeping.is_kept(),
         }
     }

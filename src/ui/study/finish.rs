@@ -12,7 +12,9 @@ pub struct FinishView<'a> {
     pub sending: Sending<'a>,
     /// Once there is nothing left to wait for.
     pub code: Option<&'a str>,
-    /// Whole seconds until the page goes there by itself; `None` without a redirect.
+    /// There is a page to go on to.
+    pub can_redirect: bool,
+    /// Whole seconds until the page goes there by itself.
     pub redirect_in: Option<u32>,
     pub is_kept_here: bool,
 }
@@ -72,12 +74,14 @@ pub fn draw(ui: &mut Ui, view: &StudyView<'_>, finish: &FinishView<'_>, requests
     if !view.contact.is_empty() {
         ui.label(RichText::new(format!("Questions: {}", view.contact)).weak());
     }
-    if let Some(seconds) = finish.redirect_in {
+    if finish.can_redirect {
         ui.horizontal(|ui| {
             if ui.add(theme::primary_button("Continue").min_size(SIZE)).clicked() {
                 requests.push(StudyRequest::Redirect);
             }
-            ui.label(format!("The page goes on in {seconds} s"));
+            if let Some(seconds) = finish.redirect_in {
+                ui.label(format!("The page goes on in {seconds} s"));
+            }
         });
     }
 }

@@ -14,6 +14,7 @@ mod safety;
 mod scenes;
 mod startup;
 mod storage;
+mod study;
 mod view;
 mod workspace;
 
@@ -92,6 +93,8 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "storage-full", storage::full).long(),
     Flow::on(WEBGL, "storage-tabs", storage::two_tabs).long(),
     Flow::on(WEBGL, "storage-damaged", storage::damaged).long(),
+    Flow::on(WEBGL, "study", study::short),
+    Flow::on(WEBGL, "study-ten", study::long).long(),
     Flow::on(WEBGL, "looks", workspace::looks),
     Flow::on(WEBGL, "nudges", workspace::nudges),
     Flow::on(WEBGL, "handles", workspace::handles),
