@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use egui::{Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use pinpose::app::{StartWith, StudyLink};
 use pinpose::formats::read_document;
 use pinpose::platform::{MemoryStorage, PageAnswer, PageCall, SceneId, Storage as _};
@@ -61,7 +61,7 @@ impl Visit {
     }
 
     fn click(&mut self, label: &str) {
-        self.harness().get_by_label(label).click();
+        self.harness().get_by_label(label).click_accesskit();
         self.harness().run_steps(3);
     }
 

@@ -54,7 +54,7 @@ fn harness(screen: for<'a> fn(&'a Study) -> StudyScreen<'a>) -> Harness<'static,
 }
 
 fn click(harness: &mut Harness<'_, Shown>, label: &str) {
-    harness.get_by_label(label).click();
+    harness.get_by_label(label).click_accesskit();
     harness.run_steps(3);
 }
 
@@ -208,7 +208,7 @@ fn a_study_is_built_page_by_page() {
     let options = SnapshotOptions::new().threshold(2.0).output_path("tests/snapshots");
     harness.snapshot_options("study-builder", &options);
     let mut press = |label: &str| {
-        harness.get_by_label(label).click();
+        harness.get_by_label(label).click_accesskit();
         harness.run_steps(3);
     };
     press("Sample");

@@ -30,7 +30,7 @@ pub enum ItemKind {
     },
 }
 
-/// A page of questions. (Unknown fields cannot be refused here: serde does not see which of them the kind takes.)
+/// A page of questions. Its kind stands beside its id in the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Questionnaire {
     pub id: String,

@@ -27,13 +27,15 @@ pub fn bar(ui: &mut Ui, replay: &ReplayView<'_>, requests: &mut Vec<StudyRequest
     ui.horizontal(|ui| {
         ui.label(RichText::new(replay.participant).strong());
         let shown = replay.trials.get(replay.trial).map_or("", String::as_str);
-        ComboBox::from_id_salt("watched trial").selected_text(shown).width(220.0).show_ui(ui, |ui| {
-            for (index, name) in replay.trials.iter().enumerate() {
-                if ui.selectable_label(index == replay.trial, name).clicked() {
-                    requests.push(StudyRequest::WatchTrial(index));
+        let combo =
+            ComboBox::from_id_salt("watched trial").selected_text(shown).width(220.0).show_ui(ui, |ui| {
+                for (index, name) in replay.trials.iter().enumerate() {
+                    if ui.selectable_label(index == replay.trial, name).clicked() {
+                        requests.push(StudyRequest::WatchTrial(index));
+                    }
                 }
-            }
-        });
+            });
+        combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Trial"));
         let text = if replay.is_playing { "Pause" } else { "Play" };
         if ui.button(text).clicked() {
             requests.push(StudyRequest::Play(!replay.is_playing));

@@ -43,7 +43,9 @@ pub fn draw(ui: &mut Ui, markdown: &str, pictures: &Pictures) {
             Block::Item(mark, spans) => {
                 ui.horizontal_top(|ui| {
                     ui.add_space(8.0);
-                    ui.label(RichText::new(mark).size(BODY));
+                    let mark = Span { text: mark, ..Span::default() };
+                    // Laid out as the text beside it, so that both stand on one line.
+                    ui.allocate_ui(egui::vec2(MARK_WIDTH, 0.0), |ui| line(ui, &[mark], BODY, false));
                     ui.vertical(|ui| line(ui, &spans, BODY, false));
                 });
             }
@@ -54,6 +56,9 @@ pub fn draw(ui: &mut Ui, markdown: &str, pictures: &Pictures) {
         }
     }
 }
+
+/// Room for the bullet or number of an entry.
+const MARK_WIDTH: f32 = 16.0;
 
 /// A little larger than in panels: this is read, not looked up.
 const BODY: f32 = 15.0;

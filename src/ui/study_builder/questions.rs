@@ -120,13 +120,14 @@ fn kind(ui: &mut Ui, answer: &mut ItemKind) {
     let is_same = |kind: &ItemKind| std::mem::discriminant(kind) == std::mem::discriminant(answer);
     let shown = kinds.iter().find(|(kind, _)| is_same(kind)).map_or("", |(_, title)| *title);
     let mut chosen = None;
-    ComboBox::from_id_salt("kind").selected_text(shown).width(80.0).show_ui(ui, |ui| {
+    let combo = ComboBox::from_id_salt("kind").selected_text(shown).width(80.0).show_ui(ui, |ui| {
         for (kind, title) in &kinds {
             if ui.selectable_label(is_same(kind), *title).clicked() && !is_same(kind) {
                 chosen = Some(kind.clone());
             }
         }
     });
+    combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Kind of answer"));
     if let Some(chosen) = chosen {
         *answer = chosen;
     }

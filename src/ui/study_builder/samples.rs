@@ -57,13 +57,19 @@ fn truth(ui: &mut Ui, session: &Session, draft: &mut Draft) {
             TruthFrom::Annotations => annotations,
             TruthFrom::Reference(name) => name.as_str(),
         };
-        ComboBox::from_id_salt("truth from").selected_text(shown.to_owned()).width(220.0).show_ui(ui, |ui| {
-            ui.selectable_value(&mut draft.truth_from, TruthFrom::Annotations, annotations);
-            for reference in references {
-                let from = TruthFrom::Reference(reference.name.clone());
-                ui.selectable_value(&mut draft.truth_from, from, format!("Reference {}", reference.name));
-            }
-        });
+        let combo = ComboBox::from_id_salt("truth from")
+            .selected_text(shown.to_owned())
+            .width(220.0)
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut draft.truth_from, TruthFrom::Annotations, annotations);
+                for reference in references {
+                    let from = TruthFrom::Reference(reference.name.clone());
+                    ui.selectable_value(&mut draft.truth_from, from, format!("Reference {}", reference.name));
+                }
+            });
+        combo
+            .response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "True poses from"));
         ui.label(RichText::new("They go into a file of their own that no participant gets.").weak());
     });
 }
