@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 use crate::photo::Pixels;
 use crate::platform;
 use crate::raster::Mask;
-use crate::scene::{DepthInMm, ObjectId, PhotoAsset, PhotoId, Sha256};
+use crate::scene::{Annotation, DepthInMm, Object, ObjectId, PhotoAsset, PhotoId, Sha256};
 use crate::session::{Command, Notice};
 use crate::solve::contour::ContourModel;
 use crate::solve::snap::{Progress, Snap, SnapHints, SnapOptions, SnapOutcome, SnapReach, SnapVerdict};
@@ -133,49 +133,54 @@ impl PinPose {
     /// Begins once photo, mask, depth map and meshes are there.
     fn prepare_snap(&mut self, asked: Asked) {
         let scene = self.session.scene();
-        let photo =
-            scene.photo(asked.photo).filter(|_| scene.annotation(asked.photo, asked.object).is_some());
-        let Some(photo) = photo else {
+        let is_there = scene.annotation(asked.photo, asked.object).is_some();
+        let Some(photo) = scene.photo(asked.photo).filter(|_| is_there).map(|photo| photo.asset.clone())
+        else {
             self.snapping.asked = None;
             return;
         };
-        let (camera, asset) = (photo.camera, photo.asset.clone());
-        let masks = scene.masks_of(asked.photo);
-        let mask =
-            masks.filter(|mask| mask.object == Some(asked.object)).map(|mask| mask.asset.clone()).next();
-        let here: Vec<(ObjectId, Pose)> = (scene.objects_in(asked.photo))
-            .map(|(object, annotation)| (object.id, annotation.camera_from_object))
-            .collect();
+        let mask = scene.masks_of(asked.photo).find(|mask| mask.object == Some(asked.object));
+        let mask = mask.map(|mask| mask.asset.clone());
+        let here: Vec<ObjectId> = scene.objects_in(asked.photo).map(|(object, _)| object.id).collect();
         // All that are missing are sent for at once. Until they are there this comes round every frame, so nothing is built.
-        let missing = here.iter().filter(|(object, _)| !self.has_solver_mesh(*object)).count();
-        let Some(pixels) = self.picture_for_snap(&asset) else { return };
+        let missing = here.iter().filter(|object| !self.has_solver_mesh(**object)).count();
+        let Some(pixels) = self.picture_for_snap(&photo) else { return };
         let mask = match mask.map(|mask| self.picture_for_snap(&mask)) {
             Some(None) => return,
-            Some(Some(mask)) => mask.map(|mask| Mask::of_picture(&mask)),
+            Some(Some(mask)) => mask,
             None => None,
         };
         if missing > 0 || self.waits_for_depth(asked.photo) {
             return;
         }
         (self.snapping.asked, self.snapping.wanted_picture) = (None, None);
-        let Some(pixels) = pixels else { return self.leave_out("The photo cannot be decoded") };
-        let batch = &self.snapping.batch;
-        let moved = |object| batch.as_ref().and_then(|batch| batch.moved_to(asked.photo, object));
-        let model_of =
-            |(object, pose)| Some((object, moved(object).unwrap_or(pose), self.contour_model(object)?));
-        let mut models: Vec<_> = here.into_iter().filter_map(model_of).collect();
-        let Some(position) = models.iter().position(|(object, ..)| *object == asked.object) else {
+        match pixels {
+            Some(pixels) => self.begin_snap(asked, &pixels, mask.as_deref()),
+            None => self.leave_out("The photo cannot be decoded"),
+        }
+    }
+
+    fn begin_snap(&mut self, asked: Asked, pixels: &Pixels, mask: Option<&Pixels>) {
+        let depth = self.depth_for_snap(asked.photo);
+        let scene = self.session.scene();
+        let annotation = scene.annotation(asked.photo, asked.object);
+        let (Some(photo), Some(annotation)) = (scene.photo(asked.photo), annotation) else { return };
+        let Some(model) = self.contour_model(asked.object) else {
             return self.leave_out("This mesh has no surface to snap to the photo");
         };
-        let (_, _, model) = models.remove(position);
-        let annotation = self.session.scene().annotation(asked.photo, asked.object);
-        let hints = SnapHints {
-            pins: annotation.map_or_else(Vec::new, |annotation| annotation.pins.clone()),
-            occluders: models.into_iter().map(|(_, pose, model)| (model, pose)).collect(),
-            depth: self.depth_for_snap(asked.photo),
+        let batch = self.snapping.batch.as_ref();
+        let others = scene.objects_in(asked.photo).filter(|(other, _)| other.id != asked.object);
+        let occluder = |(other, annotation): (&Object, &Annotation)| {
+            let moved = batch.and_then(|batch| batch.moved_to(asked.photo, other.id));
+            Some((self.contour_model(other.id)?, moved.unwrap_or(annotation.camera_from_object)))
         };
-        let options = SnapOptions { reach: asked.reach, mask };
-        let snap = Snap::with(&pixels, &camera, model, &asked.start, hints, &options);
+        let hints = SnapHints {
+            pins: annotation.pins.clone(),
+            occluders: others.filter_map(occluder).collect(),
+            depth,
+        };
+        let options = SnapOptions { reach: asked.reach, mask: mask.map(Mask::of_picture) };
+        let snap = Snap::with(pixels, &photo.camera, model, &asked.start, hints, &options);
         self.snapping.running = Some((asked, Box::new(snap), 0.0));
     }
 
@@ -187,7 +192,10 @@ impl PinPose {
         }
         if self.snapping.wanted_picture != Some(asset.sha256) {
             self.snapping.wanted_picture = Some(asset.sha256);
-            self.loading.decode(asset);
+            // It may be on its way to the screen.
+            if self.photos.wanted != Some(asset.sha256) {
+                self.loading.decode(asset);
+            }
             return None;
         }
         // What has come was taken before this is asked.
@@ -249,7 +257,7 @@ impl PinPose {
             return;
         }
         let camera_from_object = outcome.camera_from_object;
-        let covariance = outcome.covariance;
+        let covariance = outcome.covariance.map(Box::new);
         self.apply(Command::TakeSnap { photo, object, camera_from_object, covariance });
         let began_s = self.ctx.input(|input| input.time);
         self.snapping.animation =

@@ -104,7 +104,7 @@ impl Session {
             Command::EditPins(change) => self.edit_pins(change, now_ms),
             Command::TakeSnap { photo, object, camera_from_object, covariance } => {
                 self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
-                self.note_snap((photo, object), covariance);
+                self.note_snap((photo, object), covariance.map(|covariance| *covariance));
                 self.snapped_revision = Some(self.revision);
                 Ok(Vec::new())
             }

@@ -133,7 +133,7 @@ pub enum Command {
         object: ObjectId,
         camera_from_object: Pose,
         /// How sure the snap is of it.
-        covariance: Option<TwistCovariance>,
+        covariance: Option<Box<TwistCovariance>>,
     },
     /// The same for several poses, as one step; those that are locked or confirmed by now stay.
     TakeSnaps(Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>),

@@ -19,6 +19,8 @@ pub struct Sureness {
     /// [`PoseSource::Pins`] or [`PoseSource::Snap`].
     pub source: PoseSource,
     pub uncertainty: Uncertainty,
+    /// Of the depth's standard deviation what the tolerances alone make: no pin changes that.
+    pub by_tolerances_mm: f64,
     pub weakest: Option<Weakest>,
     pub helpful_pin: Option<HelpfulPin>,
 }
@@ -60,11 +62,13 @@ impl Session {
             tolerances.focal = tolerances.focal.max(relative_sigma);
         }
         let sphere = object.mesh.mesh.sphere();
-        let wide = covariance.with_tolerances(&tolerances, pose.transform_point(sphere.center));
+        let center = pose.transform_point(sphere.center);
+        let wide = covariance.with_tolerances(&tolerances, center);
+        let by_tolerances_mm = tolerances.focal.hypot(tolerances.mesh_scale) * center.length();
         let helpful = most_helpful_point(
             &photo.camera,
             pose,
-            &wide,
+            &covariance,
             (sphere.center, sphere.radius),
             PinOptions::default().click_sigma_px,
             seen_points(object, pose),
@@ -74,8 +78,12 @@ impl Session {
         Some(Sureness {
             source,
             uncertainty: Uncertainty::of(&wide, pose, sphere.center),
+            by_tolerances_mm,
             weakest: weakest(&wide, pose, sphere.center, sphere.radius),
-            helpful_pin: helpful.map(|(point, depth_mm)| HelpfulPin { way: way(point), depth_mm }),
+            helpful_pin: helpful.map(|(point, depth_mm)| HelpfulPin {
+                way: way(point),
+                depth_mm: depth_mm.hypot(by_tolerances_mm),
+            }),
         })
     }
 }

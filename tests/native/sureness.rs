@@ -50,12 +50,15 @@ fn tolerances_and_snaps_change_how_sure_a_pose_is() {
     // Rounding of 400² on the way to the camera's centre and back.
     assert!((unsure.uncertainty.depth_mm - expected).abs() < 1e-6, "{unsure:?}");
     assert_eq!(unsure.weakest.unwrap().kind, Weakness::Depth);
+    let after_pin = helpful.depth_mm.hypot(unsure.by_tolerances_mm);
+    assert!((unsure.helpful_pin.unwrap().depth_mm - after_pin).abs() < 1e-6, "a pin tells no focal length");
 
     // A snap's own covariance, as long as the pose is the snap's.
     let snapped = pose.translated(DVec3::X);
     let mut steps = [[0.0; 6]; 6];
     (0..6).for_each(|i| steps[i][i] = if i == 2 { 0.04 } else { 1e-6 });
-    let covariance = Some(TwistCovariance::from_steps_about(snapped.translation_mm, &steps));
+    let covariance = TwistCovariance::from_steps_about(snapped.translation_mm, &steps);
+    let covariance = Some(Box::new(covariance));
     let take = Command::TakeSnap { photo, object, camera_from_object: snapped, covariance };
     session.apply(take, NOW_MS).unwrap();
     let by_snap = session.sureness(&EXACT).unwrap();
@@ -89,7 +92,8 @@ fn the_panel_shows_the_numbers_and_the_weakest_direction() {
     harness.run();
     harness.key_press(egui::Key::Enter);
     harness.run();
-    // 5 % of the distance is more than the pins leave open in any direction.
+    // 5 % of the distance is more than the pins leave open in any direction, and no pin changes that.
+    harness.get_by_label_contains("a calibrated camera");
     harness.get_by_label("Show ± 2σ of the depth").click();
     harness.run();
     assert!(matches!(*motion.borrow(), Some(ShownMotion::Sway(weakest)) if weakest.kind == Weakness::Depth));

@@ -1,6 +1,6 @@
 //! A mesh's surface as points to be turned, and how far a turned point is from it.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::math::Pose;
 use crate::mesh::{Bvh, Mesh, PointTree};
@@ -67,7 +67,7 @@ impl<'a> Surface<'a> {
             axes: axes.map(DVec3::from_array),
             moments,
             area_points: area_points(mesh, &ends, area),
-            vertex_points: vertices.into_iter().map(|vertex| vertex.as_dvec3()).collect(),
+            vertex_points: vertices.into_iter().map(Vec3::as_dvec3).collect(),
         })
     }
 

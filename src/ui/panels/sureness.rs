@@ -14,6 +14,9 @@ const MOST_PERCENT: f64 = 20.0;
 /// Of the object's radius: a way shorter than this has no name.
 const NAMED_WAY: f64 = 0.35;
 
+/// Of a standard deviation: half of the variance.
+const MOSTLY: f64 = 0.7;
+
 /// What the section keeps between frames.
 #[derive(Debug, Default)]
 pub struct SurenessForm {
@@ -55,7 +58,13 @@ pub fn draw(ui: &mut Ui, session: &Session, tolerances: &mut Tolerances, form: &
             }
             note(ui, view_that_helps(weakest.kind), false);
         }
-        if let Some(pin) = sureness.helpful_pin {
+        if sureness.by_tolerances_mm > MOSTLY * sureness.uncertainty.depth_mm {
+            note(
+                ui,
+                "Most of it comes of the tolerances: a calibrated camera and a measured mesh help.",
+                false,
+            );
+        } else if let Some(pin) = sureness.helpful_pin {
             note(ui, &pin_that_helps(&pin, &sureness.uncertainty), false);
         }
     };
@@ -96,7 +105,7 @@ fn tolerance_fields(ui: &mut Ui, tolerances: &mut Tolerances) {
             let mut percent = *part * 100.0;
             let field =
                 NumberField { label, name, tooltip, unit: " %", speed: 0.01, decimals: 2, live: true };
-            if field.show(ui, width, 42.0, &mut percent).changed() && percent.is_finite() {
+            if field.show(ui, width, 50.0, &mut percent).changed() && percent.is_finite() {
                 *part = percent.clamp(0.0, MOST_PERCENT) / 100.0;
             }
         }
