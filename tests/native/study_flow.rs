@@ -116,7 +116,7 @@ impl Visit {
         }
     }
 
-    fn to_first_trial(&mut self) {
+    fn go_to_first_trial(&mut self) {
         self.wait("consent");
         self.click("I have read this and agree to take part");
         self.click("Agree and continue");
@@ -168,7 +168,7 @@ fn kept(visit: &mut Visit, storage: &MemoryStorage, is_so: impl Fn(&Participatio
 fn a_participant_goes_through_the_example_with_a_reload_in_a_trial() {
     let storage = Rc::new(MemoryStorage::default());
     let mut visit = Visit::start(&storage, "flow");
-    visit.to_first_trial();
+    visit.go_to_first_trial();
     visit.work();
     assert_eq!(visit.screen(), "trial");
     visit.move_object();
@@ -228,7 +228,7 @@ fn a_participant_goes_through_the_example_with_a_reload_in_a_trial() {
 fn what_is_not_part_of_a_trial_is_refused() {
     let storage = Rc::new(MemoryStorage::default());
     let mut visit = Visit::start(&storage, "refusals");
-    visit.to_first_trial();
+    visit.go_to_first_trial();
     let rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 500.0], [0.0, 0.0, 0.0, 1.0]];
     let set = PageCall::SetPose { photo: 1, object: 2, camera_from_object: rows };
     assert!(visit.refused(set).contains("setPose"));
@@ -247,7 +247,7 @@ fn what_is_not_part_of_a_trial_is_refused() {
 fn time_stands_still_while_paused_and_the_photo_is_hidden() {
     let storage = Rc::new(MemoryStorage::default());
     let mut visit = Visit::start(&storage, "pause");
-    visit.to_first_trial();
+    visit.go_to_first_trial();
     visit.move_object();
     visit.click("Pause");
     visit.harness().get_by_label("Paused");

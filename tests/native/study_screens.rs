@@ -23,8 +23,11 @@ struct Shown {
     requests: Vec<StudyRequest>,
 }
 
+/// A screen of a study.
+type Screen = for<'a> fn(&'a Study) -> StudyScreen<'a>;
+
 /// One screen of the example study.
-fn harness(screen: for<'a> fn(&'a Study) -> StudyScreen<'a>) -> Harness<'static, Shown> {
+fn harness(screen: Screen) -> Harness<'static, Shown> {
     let shown = Shown {
         session: small_session(),
         study: example_pack().study,
@@ -101,7 +104,7 @@ fn finish(study: &Study) -> StudyScreen<'_> {
 
 #[test]
 fn the_screens_look_as_they_did() {
-    let screens: [(&str, for<'a> fn(&'a Study) -> StudyScreen<'a>); 6] = [
+    let screens: [(&str, Screen); 6] = [
         ("study-consent", |study| StudyScreen::Consent { text: &study.texts.consent }),
         ("study-instructions", instructions),
         ("study-trial", trial),
