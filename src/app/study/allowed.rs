@@ -24,10 +24,9 @@ pub fn verdict(command: &Command, tools: &[Tool], session: &Session, by_handle: 
         Command::BeginGesture(_) if by_handle => needs(Tool::Handles, "dragging a handle"),
         Command::BeginGesture("Move" | "Change depth") | Command::Step { .. } => needs(Tool::Move, "moving"),
         Command::BeginGesture("Rotate") => needs(Tool::Rotate, "turning"),
-        Command::BeginGesture("Add pin" | "Drag pin") => needs(Tool::Pins, "setting pins"),
         Command::Drag { .. } | Command::DragPin { .. } if !session.gesture_under_way() => Verdict::Ignored,
-        Command::Drag { .. } | Command::DragPin { .. } => Verdict::Allowed,
-        Command::AddPin { .. }
+        Command::BeginGesture("Add pin" | "Drag pin")
+        | Command::AddPin { .. }
         | Command::BeginPin(_)
         | Command::CompletePin { .. }
         | Command::EditPins(_) => needs(Tool::Pins, "setting pins"),
@@ -36,9 +35,12 @@ pub fn verdict(command: &Command, tools: &[Tool], session: &Session, by_handle: 
         Command::TakeSnap { .. } => needs(Tool::Snap, "snap"),
         Command::SetLook(_) => needs(Tool::Looks, "another look"),
         Command::SetPanes(_) => needs(Tool::SceneView, "another view"),
-        Command::EndGesture | Command::CancelGesture => Verdict::Allowed,
+        Command::Drag { .. }
+        | Command::DragPin { .. }
+        | Command::EndGesture
+        | Command::CancelGesture
+        | Command::Select(Some(_)) => Verdict::Allowed,
         // There is one object, and it stays in the hand.
-        Command::Select(Some(_)) => Verdict::Allowed,
         Command::Select(None) | Command::SelectAlso(_) => Verdict::Ignored,
         _ => Verdict::Refused("this"),
     }

@@ -32,6 +32,10 @@ pub struct Loading {
 }
 
 impl Loading {
+    fn of(files: StudyFiles) -> Self {
+        Self { files: Some(files), ..Self::default() }
+    }
+
     /// Files that are done, of all that there are. Each is fetched and then read.
     pub fn progress(&self) -> (usize, usize) {
         let Some(files) = &self.files else { return (0, 0) };
@@ -62,7 +66,7 @@ fn address(study: &str) -> (String, bool) {
 impl Participating {
     /// Fetches the study that the link names.
     pub(super) fn fetch_study(&mut self) {
-        self.state = State::Loading(Loading::default());
+        self.state = State::Loading(Box::default());
         let Some(link) = &self.link else { return };
         let (url, is_zip) = address(&link.study);
         let (arrived, ctx) = (self.arrived.clone(), self.ctx.clone());
@@ -94,7 +98,7 @@ impl Participating {
 
     pub(super) fn take_zip(&mut self, zip: Arc<[u8]>) {
         match StudyFiles::from_zip(zip) {
-            Ok(files) => self.state = State::Loading(Loading { files: Some(files), ..Loading::default() }),
+            Ok(files) => self.state = State::Loading(Box::new(Loading::of(files))),
             Err(error) => self.fail(format!("The study cannot be read: {error}"), false),
         }
     }
@@ -112,7 +116,7 @@ impl Participating {
         match result {
             Ok(false) => {}
             Ok(true) => {
-                let Loading { files, photos, meshes, .. } = std::mem::take(loading);
+                let Loading { files, photos, meshes, .. } = std::mem::take(&mut **loading);
                 if let Some(files) = files {
                     self.begin(Ready { files, photos, meshes });
                 }
@@ -127,14 +131,15 @@ impl Participating {
             Arrived::Json(Ok(bytes)) => match StudyFiles::from_json(&bytes) {
                 Ok(files) => {
                     let missing = files.missing();
-                    self.state = State::Loading(Loading { files: Some(files), ..Loading::default() });
+                    self.state = State::Loading(Box::new(Loading::of(files)));
                     self.fetch_files(missing);
                 }
                 Err(error) => self.fail(format!("The study cannot be read: {error}"), false),
             },
             Arrived::File(asset, Ok(bytes)) => {
-                let State::Loading(Loading { files: Some(files), .. }) = &mut self.state else { return };
-                if let Err(error) = files.add(&asset, bytes.into()) {
+                let State::Loading(loading) = &mut self.state else { return };
+                let added = loading.files.as_mut().map(|files| files.add(&asset, bytes.into()));
+                if let Some(Err(error)) = added {
                     self.fail(error.to_string(), true);
                 }
             }

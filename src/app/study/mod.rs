@@ -57,7 +57,7 @@ pub struct Link {
 
 enum State {
     /// `study.json`, its files, and what is made of them.
-    Loading(arriving::Loading),
+    Loading(Box<arriving::Loading>),
     Problem {
         text: String,
         can_retry: bool,
@@ -131,7 +131,7 @@ impl PinPose {
         Participating {
             ctx: self.ctx.clone(),
             link,
-            state: State::Loading(arriving::Loading::default()),
+            state: State::Loading(Box::default()),
             pictures: Pictures::default(),
             page: 0,
             arrived: Rc::default(),
@@ -249,7 +249,7 @@ impl Participating {
 
     /// Looks for what is kept of an earlier visit.
     fn look_back(&mut self, id: &str) {
-        let state = std::mem::replace(&mut self.state, State::Loading(arriving::Loading::default()));
+        let state = std::mem::replace(&mut self.state, State::Loading(Box::default()));
         let State::AskId(ready) = state else {
             self.state = state;
             return;
@@ -268,7 +268,7 @@ impl Participating {
 
     /// Begins, or goes on where an earlier visit ended.
     fn run(&mut self, kept: Option<Participation>) {
-        let state = std::mem::replace(&mut self.state, State::Loading(arriving::Loading::default()));
+        let state = std::mem::replace(&mut self.state, State::Loading(Box::default()));
         let State::LookingBack { ready, participant } = state else { return };
         let now_ms = platform::now_ms();
         let is_same = |kept: &Participation| kept.results.study.sha256 == ready.files.sha256;

@@ -7,7 +7,8 @@ use crate::math::Pose;
 use crate::scene::{PoseSource, Sha256};
 use crate::session::{Command, CommandId, Panes, PinChange, Session};
 use crate::study::{
-    EventKind, Outcome, RunningTrial, Sample, Stage, Step, Tool, TrialPlace, camera_of, feedback, start_pose,
+    EventKind, Outcome, PinRecord, RunningTrial, Sample, Stage, Step, Tool, TrialPlace, camera_of, feedback,
+    start_pose,
 };
 
 /// The sample that is in the session.
@@ -85,7 +86,7 @@ impl Running {
         };
         let mut stage = Stage::new(study, sample, photo.clone(), mesh, pose, now_ms).map_err(text)?;
         if let Some(annotation) = stage.scene.annotations.get_mut(&(stage.photo, stage.object)) {
-            annotation.pins = pins.into_iter().map(|pin| pin.to_pin()).collect();
+            annotation.pins = pins.into_iter().map(PinRecord::to_pin).collect();
         }
         if self.participation.trial().is_none() {
             self.participation.start_trial(RunningTrial::new(start));
@@ -193,10 +194,9 @@ impl PinPose {
         let tools = self.study_tools();
         let has = |tool| tools.contains(&tool);
         let hand = match (has(Tool::Move), has(Tool::Rotate), has(Tool::Pins)) {
-            (true, ..) => Hand::Move,
             (false, true, _) => Hand::Rotate,
             (false, false, true) => Hand::Pin,
-            (false, false, false) => Hand::Move,
+            (true, ..) | (false, false, false) => Hand::Move,
         };
         // Taking a tool never fails.
         self.session.apply(Command::SetTool(hand), now_ms).ok();
@@ -370,7 +370,6 @@ fn kind_of(command: &Command, start: Pose) -> Option<EventKind> {
         Command::Run(CommandId::Undo) => EventKind::Undo,
         Command::Run(CommandId::Redo) => EventKind::Redo,
         Command::Run(CommandId::SolvePins) => EventKind::Pin,
-        Command::Run(CommandId::ClearPins) => EventKind::PinRemoved,
         Command::Run(id) if id.nudge().is_some() => EventKind::Nudge,
         Command::Run(CommandId::MoveTool | CommandId::RotateTool | CommandId::PinTool)
         | Command::SetTool(_) => EventKind::Tool,
@@ -399,7 +398,7 @@ fn kind_of(command: &Command, start: Pose) -> Option<EventKind> {
         Command::SetPose { camera_from_object, .. } if *camera_from_object == start => EventKind::Reset,
         Command::SetPose { .. } | Command::SetPoseFromText(_) => EventKind::Numbers,
         Command::TakeSnap { .. } => EventKind::Snap,
-        Command::EditPins(PinChange::Remove(_)) => EventKind::PinRemoved,
+        Command::Run(CommandId::ClearPins) | Command::EditPins(PinChange::Remove(_)) => EventKind::PinRemoved,
         Command::AddPin { .. } | Command::CompletePin { .. } | Command::EditPins(_) => EventKind::Pin,
         Command::CancelGesture | Command::Run(CommandId::Cancel) => EventKind::Undo,
         _ => return None,

@@ -78,7 +78,7 @@ fn row(ui: &mut Ui, session: &Session, index: usize, chosen: &mut Chosen, has_tr
     let scene = session.scene();
     let photo = scene.photo(chosen.photo).map_or("", |photo| photo.name.as_str());
     let object = scene.object(chosen.object).map_or("", |object| object.name.as_str());
-    ui.add(egui::Label::new(photo).truncate());
+    ui.add_sized([170.0, 20.0], egui::Label::new(photo).truncate().halign(egui::Align::Min));
     ui.label(object);
     let shown = ROLES.iter().find(|(role, _)| *role == chosen.role).map_or("", |(_, title)| *title);
     let combo = ComboBox::from_id_salt(("role", index)).selected_text(shown).width(130.0).show_ui(ui, |ui| {
