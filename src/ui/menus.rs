@@ -85,6 +85,8 @@ pub const MENUS: [MenuPlan; 6] = [
             &[
                 CommandId::Snap,
                 CommandId::SnapWide,
+                CommandId::SnapAll,
+                CommandId::FindSymmetries,
                 CommandId::SolvePins,
                 CommandId::FocalFromPins,
                 CommandId::ClearPins,
