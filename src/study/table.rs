@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn names_and_fields_survive_any_text() {
-        assert_eq!(results_name("demo", "A b/../ü", 0.0), "demo_A_b_____19700101T000000Z");
+        assert_eq!(results_name("demo", "A b/../ü", 0.0), "demo_A_b______19700101T000000Z");
         assert_eq!(field("a,\"b\""), "\"a,\"\"b\"\"\"");
         assert_eq!(field("plain"), "plain");
     }
