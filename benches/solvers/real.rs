@@ -15,6 +15,7 @@ use pinpose::mesh::{Mesh, load, no_companions};
 use pinpose::metrics::PoseError;
 use pinpose::photo::{Pixels, decode};
 use pinpose::raster::{PixelRegion, RasterItem, rasterize};
+use pinpose::scene::Symmetries;
 use pinpose::solve::contour::ContourModel;
 use pinpose::solve::snap::{Snap, SnapHints, SnapVerdict};
 use serde_json::Value;
@@ -145,7 +146,9 @@ fn snap_one(chance: &mut Chance, frame: &Frame, object: &Object) -> Run {
     let clock = cpu_secs();
     let outcome = Snap::new(&frame.photo, &frame.camera, object.model.clone(), &start, hints).run();
     let ms = (cpu_secs() - clock) * 1e3;
-    let error = |pose: &Pose| PoseError::between(pose, &object.truth, &object.mesh, usize::MAX);
+    let error = |pose: &Pose| {
+        PoseError::between(pose, &object.truth, &object.mesh, &Symmetries::default(), usize::MAX)
+    };
     let found = outcome.camera_from_object;
     Run {
         object: object.name.clone(),

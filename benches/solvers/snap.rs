@@ -8,6 +8,7 @@ use glam::{DAffine3, DVec3};
 use pinpose::math::Intrinsics;
 use pinpose::mesh::{Mesh, load, no_companions};
 use pinpose::metrics::PoseError;
+use pinpose::scene::Symmetries;
 use pinpose::solve::TwistCovariance;
 use pinpose::solve::contour::ContourModel;
 use pinpose::solve::snap::{Snap, SnapHints, SnapOptions, SnapReach};
@@ -92,7 +93,7 @@ fn snap_one(
     let outcome =
         Snap::with(&photo, &camera(), object.model.clone(), &start, SnapHints::default(), &options).run();
     let ms = (cpu_secs() - clock) * 1e3;
-    let error = |pose| PoseError::between(pose, &truth, &object.mesh, 5000);
+    let error = |pose| PoseError::between(pose, &truth, &object.mesh, &Symmetries::default(), 5000);
     let found = outcome.camera_from_object;
     let run = Run {
         object: object.name.clone(),
