@@ -164,10 +164,11 @@ fn several_snaps_are_one_step_and_leave_what_was_confirmed() {
     assert_eq!(pose(&session), posed, "a confirmed pose stays");
 }
 
-/// The panel beside a search that found the box's axes.
-type SharedAxis = Rc<RefCell<Option<SymmetryAxis>>>;
+/// With its session and the turn that was asked for last.
+type Panel = (Harness<'static>, Rc<RefCell<Session>>, Rc<RefCell<Option<SymmetryAxis>>>);
 
-fn panel(session: Session) -> (Harness<'static>, Rc<RefCell<Session>>, SharedAxis) {
+/// The panel beside a search that found the box's axes.
+fn panel(session: Session) -> Panel {
     let mesh = session.scene().objects[0].mesh.clone();
     let found = find_symmetries(&mesh.mesh);
     let (session, asked_turn) = (Rc::new(RefCell::new(session)), Rc::new(RefCell::new(None)));
