@@ -150,7 +150,7 @@ fn finish(page: &mut Page, trials: usize) -> anyhow::Result<()> {
     ensure!(results.participant.id == "P1" && results.participant.recruiter["PROLIFIC_PID"] == "abc");
     ensure!(results.finished_at.is_some() && !results.is_simulated);
     for trial in &results.trials {
-        let last = trial.events.iter().rev().find_map(|event| event.pose()).context("No pose")??;
+        let last = trial.events.iter().rev().find_map(pinpose::study::Event::pose).context("No pose")??;
         ensure!(last == trial.final_pose.to_pose()?, "Trial {} does not end as its events", trial.index);
         ensure!(trial.time_s > 0.0 && trial.gestures.values().sum::<u32>() > 0);
     }
