@@ -134,6 +134,8 @@ pub struct State {
     /// Somebody tried to go on with answers missing: these are marked.
     asks_for_missing: bool,
     help_is_open: bool,
+    /// The next frame shows what is below.
+    turn_over: bool,
 }
 
 impl State {

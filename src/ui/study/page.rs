@@ -1,6 +1,7 @@
 //! A screen of text and questions: one column that is easy to read, and at its foot the one thing to do next.
 
-use egui::{Align, Checkbox, Layout, RichText, ScrollArea, TextEdit, Ui, Vec2};
+use egui::scroll_area::ScrollAreaOutput;
+use egui::{Align, Button, Checkbox, Layout, Rect, RichText, ScrollArea, Stroke, TextEdit, Ui, Vec2};
 
 use super::{State, StudyRequest, StudyScreen, StudyView};
 use super::{finish, practice, questionnaire, questions, text};
@@ -16,7 +17,11 @@ pub fn draw(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut
         preview_bar(ui, requests);
     }
     // A new screen begins at its top.
-    ScrollArea::vertical().id_salt(("study page", view.page)).auto_shrink(false).show(ui, |ui| {
+    let area = ScrollArea::vertical().id_salt(("study page", view.page)).auto_shrink(false);
+    let shown = area.show(ui, |ui| {
+        if std::mem::take(&mut state.turn_over) {
+            ui.scroll_with_delta(Vec2::new(0.0, -0.8 * ui.clip_rect().height()));
+        }
         let width = (ui.available_width() - 48.0).min(COLUMN);
         ui.vertical_centered(|ui| {
             ui.set_max_width(width);
@@ -29,6 +34,21 @@ pub fn draw(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut
             ui.add_space(48.0);
         });
     });
+    state.turn_over = more_below(ui, &shown);
+}
+
+/// Says that the screen goes on, for what to do next is at its foot; true if it is to be turned over.
+fn more_below(ui: &mut Ui, shown: &ScrollAreaOutput<()>) -> bool {
+    let visible = shown.inner_rect;
+    let hidden = shown.content_size.y - shown.state.offset().y - visible.height();
+    // The last of it is empty.
+    if hidden < 48.0 {
+        return false;
+    }
+    let place =
+        Rect::from_center_size(visible.center_bottom() - Vec2::new(0.0, 22.0), Vec2::new(130.0, 28.0));
+    let stroke = Stroke::new(1.0, theme::accent(ui.visuals()));
+    ui.put(place, Button::new("More below").corner_radius(14.0).stroke(stroke)).clicked()
 }
 
 fn preview_bar(ui: &mut Ui, requests: &mut Vec<StudyRequest>) {
@@ -179,7 +199,7 @@ fn consent(
         if ui.add_enabled(state.consent, agree).clicked() {
             requests.push(StudyRequest::Agree);
         }
-        if ui.add(egui::Button::new("I do not agree").min_size(BUTTON)).clicked() {
+        if ui.add(Button::new("I do not agree").min_size(BUTTON)).clicked() {
             requests.push(StudyRequest::Decline);
         }
     });

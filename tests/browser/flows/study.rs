@@ -44,7 +44,7 @@ fn take_part(context: &mut Context, samples: usize, repeats: u32) -> anyhow::Res
     page.click_widget("Often")?;
     page.click_widget("Continue")?;
     on_screen(page, "instructions")?;
-    page.click_widget("Start practice")?;
+    click_scrolled(page, "Start practice")?;
     on_screen(page, "practice")?;
     work(page)?;
     on_screen(page, "feedback")?;
@@ -124,7 +124,7 @@ fn questionnaires(page: &mut Page) -> anyhow::Result<()> {
 
 /// Turns the wheel until a widget can be seen whole, and clicks it.
 fn click_scrolled(page: &mut Page, label: &str) -> anyhow::Result<()> {
-    const FOOT: f64 = 590.0;
+    const FOOT: f64 = 550.0;
     let deadline = std::time::Instant::now() + PATIENCE;
     loop {
         let widgets = page.widgets()?;
