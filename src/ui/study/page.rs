@@ -40,7 +40,7 @@ pub fn draw(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut
 /// Says that the screen goes on, for what to do next is at its foot; true if it is to be turned over.
 fn more_below(ui: &mut Ui, shown: &ScrollAreaOutput<()>) -> bool {
     let visible = shown.inner_rect;
-    let hidden = shown.content_size.y - shown.state.offset().y - visible.height();
+    let hidden = shown.content_size.y - shown.state.clamped_offset().y - visible.height();
     // The last of it is empty.
     if hidden < 48.0 {
         return false;
