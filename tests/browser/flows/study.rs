@@ -106,7 +106,10 @@ fn reload_in_trial(page: &mut Page) -> anyhow::Result<()> {
     page.wait_until_ready()?;
     on_screen(page, "trial")?;
     let back = page.wait_for_state("state.photos.length === 1", PATIENCE)?;
-    ensure!(*back.selected_pose()? == moved, "The object came back elsewhere");
+    let back = back.selected_pose()?;
+    // When it was changed is when it was put there again.
+    let (back, moved) = (back.camera_from_object, moved.camera_from_object);
+    ensure!(back == moved, "The object came back elsewhere: {back:?} in place of {moved:?}");
     Ok(())
 }
 
