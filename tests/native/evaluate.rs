@@ -8,7 +8,9 @@ use pinpose::math::Pose;
 use serde_json::{Value, json};
 
 use crate::bop_folder::BopFolder;
-use crate::support::{CAMERA_JSON, Python, box_mesh, data_folder, empty_folder, flat_photo, numpy, pinpose};
+use crate::support::{
+    CAMERA_JSON, Noise, Python, box_mesh, data_folder, empty_folder, flat_photo, numpy, pinpose,
+};
 
 /// Both compute in f64 from the same numbers; what differs is the order of sums over some ten thousand vertices, and the
 /// arc cosine of a number near 1 (a rotation of a degree keeps nine digits).
@@ -23,22 +25,6 @@ struct Case {
     object: String,
     truth: Pose,
     estimate: Pose,
-}
-
-/// Numbers from −1 to 1, the same ones every time. (Marsaglia, *Xorshift RNGs*, 2003.)
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
 }
 
 /// Up to some 15 degrees and 35 mm away.

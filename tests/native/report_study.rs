@@ -11,28 +11,7 @@ use pinpose::study::{
     QuestionnaireResult, Results, StudyRecord, SymmetriesRecord, TrialResult, Truth, TruthSample, rfc3339,
 };
 
-use crate::support::empty_folder;
-
-/// Numbers from −1 to 1, the same ones every time. (Marsaglia, *Xorshift RNGs*, 2003.)
-pub struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
-    fn whole(&mut self, least: i32, most: i32) -> f64 {
-        let part = (self.next() + 1.0) / 2.0;
-        f64::from(least) + (part * f64::from(most - least + 1)).floor().min(f64::from(most - least))
-    }
-}
+use crate::support::{Noise, empty_folder};
 
 /// What people are like in a study.
 pub struct Recipe {

@@ -181,3 +181,24 @@ pub fn small_session() -> Session {
     drop_files(&mut session, &files, None);
     session
 }
+
+/// Numbers from −1 to 1, the same ones every time. (Marsaglia, *Xorshift RNGs*, 2003.)
+pub struct Noise(pub u64);
+
+impl Noise {
+    pub fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    pub fn vector(&mut self) -> glam::DVec3 {
+        glam::DVec3::new(self.next(), self.next(), self.next())
+    }
+
+    pub fn whole(&mut self, least: i32, most: i32) -> f64 {
+        let part = (self.next() + 1.0) / 2.0;
+        f64::from(least) + (part * f64::from(most - least + 1)).floor().min(f64::from(most - least))
+    }
+}

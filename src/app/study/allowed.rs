@@ -62,7 +62,7 @@ fn verdict_of_entry(id: CommandId, tools: &[Tool]) -> Verdict {
 }
 
 /// The tool that an entry of the command table is a part of.
-fn tool_of(id: CommandId) -> Option<Tool> {
+pub(super) fn tool_of(id: CommandId) -> Option<Tool> {
     if id.nudge().is_some() {
         return Some(Tool::Nudge);
     }

@@ -1,5 +1,6 @@
 //! A trial on screen: its scene in the session, its clock from the first complete frame, its gestures as they are made.
 
+use super::allowed::tool_of;
 use super::{Running, State, kind_of_gesture};
 use crate::app::PinPose;
 use crate::interact::{Hands, Pane};
@@ -373,26 +374,10 @@ fn kind_of(command: &Command, start: Pose) -> Option<EventKind> {
         Command::Run(id) if id.nudge().is_some() => EventKind::Nudge,
         Command::Run(CommandId::MoveTool | CommandId::RotateTool | CommandId::PinTool)
         | Command::SetTool(_) => EventKind::Tool,
-        Command::Run(
-            CommandId::NextOverlay
-            | CommandId::ToggleOverlay
-            | CommandId::NextLayers
-            | CommandId::ToggleOutline
-            | CommandId::ToggleXRay
-            | CommandId::ToggleWipe
-            | CommandId::ToggleDifference,
-        )
-        | Command::SetLook(_) => EventKind::Look,
-        Command::Run(
-            CommandId::CycleViews
-            | CommandId::PhotoView
-            | CommandId::SceneView
-            | CommandId::SplitView
-            | CommandId::ZoomToObject
-            | CommandId::FitPhoto
-            | CommandId::ResetSceneView,
-        )
-        | Command::SetPanes(_) => EventKind::View,
+        Command::SetLook(_) => EventKind::Look,
+        Command::Run(CommandId::ZoomToObject | CommandId::FitPhoto) | Command::SetPanes(_) => EventKind::View,
+        Command::Run(id) if tool_of(*id) == Some(Tool::Looks) => EventKind::Look,
+        Command::Run(id) if tool_of(*id) == Some(Tool::SceneView) => EventKind::View,
         Command::Nudge(..) => EventKind::Nudge,
         Command::Step { .. } => EventKind::Depth,
         Command::SetPose { camera_from_object, .. } if *camera_from_object == start => EventKind::Reset,

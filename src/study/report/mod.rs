@@ -1,7 +1,6 @@
 //! From the result files of a study and its truth to a paper's tables and figures.
 
 mod analysis;
-mod base64;
 mod contrast;
 mod figure;
 mod gather;

@@ -1,8 +1,10 @@
 //! A drawing as SVG.
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
 use super::drawing::{Anchor, Drawing, Shape, Stroke, Text};
 use crate::scene::Rgb;
-use crate::study::report::base64::base64;
 use crate::study::report::table_text::html_text;
 
 /// What a reader's machine has: the metric twins of Helvetica.
@@ -61,7 +63,7 @@ fn element(shape: &Shape) -> String {
             number(*y),
             number(*width),
             number(*height),
-            base64(png)
+            STANDARD.encode(png)
         ),
     }
 }
