@@ -191,6 +191,7 @@ impl PinPose {
             arrangement: self.session.panes().arrangement.name(),
             panels: !self.ui_state.panels_hidden,
             busy: self.loading.is_busy()
+                || self.loading.is_finishing_mesh()
                 || self.datasets.is_busy()
                 || self.scenes.is_switching()
                 || self.snapping.is_busy(),

@@ -443,7 +443,13 @@ impl Load {
             Ok(Done::DepthMap(asset, _)) if self.opening.is_some() => self.batch.photos.push(asset),
             Ok(Done::DepthMap(asset, _)) => self.likely_depths.push(asset),
             // These are of no load.
-            Ok(Done::Thumbnail(_) | Done::Headers(_) | Done::SolverMesh(_) | Done::Symmetries(_)) => return,
+            Ok(
+                Done::Thumbnail(_)
+                | Done::Headers(_)
+                | Done::SolverMesh(_)
+                | Done::Symmetries(_)
+                | Done::MeshRest(_),
+            ) => return,
             Ok(Done::Mesh(asset, warnings)) => {
                 self.warnings.extend(warnings.into_iter().map(|warning| format!("{}: {warning}", file.name)));
                 self.batch.meshes.push(asset);

@@ -137,14 +137,13 @@ pub fn read_mesh_with(
 ) -> Result<(MeshAsset, Vec<String>), FormatError> {
     let find = |key: &str| companions::find_among(companions, key);
     let loaded = crate::mesh::load(&file.name, &file.bytes, &find)?;
-    let bvh = crate::mesh::Bvh::build(&loaded.mesh);
     let asset = MeshAsset {
         file_name: file.name.clone(),
         sha256: crate::scene::Sha256::of(&file.bytes),
         bytes: file.bytes.clone(),
         companions: companions::kept(companions),
         mesh: loaded.mesh,
-        bvh,
+        search_tree: crate::mesh::SearchTree::default(),
         untransformed: None,
         drawn: crate::mesh::DrawnAhead::default(),
     };

@@ -30,7 +30,7 @@ pub fn pick_along(scene: &Scene, photo: PhotoId, ray_camera: &Ray) -> Vec<Hit> {
         .filter_map(|(object, annotation)| {
             let camera_from_object = annotation.camera_from_object;
             let ray_object = ray_camera.transformed(&camera_from_object.inverse());
-            let hit = object.mesh.bvh.cast(&object.mesh.mesh, &ray_object)?;
+            let hit = object.mesh.tree()?.cast(&object.mesh.mesh, &ray_object)?;
             Some(Hit {
                 object: object.id,
                 face: hit.triangle,

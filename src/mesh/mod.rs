@@ -19,6 +19,7 @@ mod painted;
 mod ply;
 mod point_tree;
 mod ray_cast;
+mod search_tree;
 mod simplify;
 mod stl;
 #[cfg(test)]
@@ -45,6 +46,7 @@ pub use normals::{ShadingGroup, ShadingMesh, ShadingVertex, shading_vertices};
 pub use paint::{Material, Paint};
 pub use point_tree::PointTree;
 pub use ray_cast::RayHit;
+pub use search_tree::SearchTree;
 pub use simplify::simplified;
 pub use textures::MAX_TEXTURE_SIDE_PX;
 pub use unit::{FileUnit, MeshUnit, length_text};

@@ -112,10 +112,11 @@ impl Meshes {
         let (mesh, buffers) = match &mut kept.coarse {
             Some((coarse, buffers)) if coarse.cell_mm <= tolerance_mm => (&coarse.mesh, buffers),
             _ => {
-                let shading =
-                    |waiting: Option<ShadingMesh>| waiting.unwrap_or_else(|| shading_vertices(&mesh.mesh));
                 let (waiting, textures) = (&mut kept.waiting, &kept.textures);
-                let upload = || upload(gpu, usage, &shading(waiting.take()), textures);
+                let upload = || {
+                    let made = waiting.take().or_else(|| mesh.drawn.take_whole());
+                    upload(gpu, usage, &made.unwrap_or_else(|| shading_vertices(&mesh.mesh)), textures)
+                };
                 (&mesh.mesh, kept.whole.get_or_insert_with(upload))
             }
         };
@@ -148,7 +149,7 @@ impl Kept {
         Self {
             mesh: mesh.clone(),
             whole: None,
-            waiting: Some(drawn.shading),
+            waiting: drawn.shading,
             coarse,
             textures,
             last_pictures: [None; ViewSlot::COUNT],

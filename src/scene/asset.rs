@@ -9,7 +9,7 @@ use sha2::Digest;
 
 use super::CameraOrigin;
 use crate::math::Intrinsics;
-use crate::mesh::{Bvh, DrawnAhead, FileUnit, Mesh, MeshError};
+use crate::mesh::{Bvh, DrawnAhead, FileUnit, Mesh, MeshError, SearchTree};
 
 /// The field of view that is assumed where a photo says nothing of its lens.
 const ASSUMED_FIELD_OF_VIEW_RAD: f64 = std::f64::consts::FRAC_PI_3;
@@ -101,9 +101,9 @@ pub struct MeshAsset {
     /// Kept, so that the mesh looks the same when it is opened again.
     pub companions: Vec<CompanionFile>,
     pub mesh: Mesh,
-    pub bvh: Bvh,
-    /// The mesh as its file has it, where this one is transformed: going back loses no digit.
-    pub untransformed: Option<Arc<Self>>,
+    pub search_tree: SearchTree,
+    /// The mesh as its file has it, where this one is transformed, and how it is: going back loses no digit.
+    pub untransformed: Option<(Arc<Self>, DAffine3)>,
     /// For whoever draws it first.
     pub drawn: DrawnAhead,
 }
@@ -116,6 +116,16 @@ impl MeshAsset {
         const BYTES_PER_TRIANGLE: usize = 12 + 2 * 32;
         let (vertices, triangles) = (self.mesh.positions_mm().len(), self.mesh.triangles().len());
         vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE
+    }
+
+    /// The tree of the present mesh; `None` for the moment in which the worker makes it.
+    pub fn tree(&self) -> Option<&Bvh> {
+        match &self.untransformed {
+            Some((source, transform)) => {
+                self.search_tree.of_transformed(&self.mesh, (&source.search_tree, &source.mesh), transform)
+            }
+            None => self.search_tree.of(&self.mesh),
+        }
     }
 
     /// What the file says of the unit of its numbers.
@@ -131,7 +141,7 @@ impl MeshAsset {
     ) -> Result<Arc<Self>, MeshError> {
         // Only a mesh that nobody has transformed yet has no other behind it.
         let (source, present) = match &self.untransformed {
-            Some(source) => (source, DMat4::IDENTITY),
+            Some((source, _)) => (source, DMat4::IDENTITY),
             None => (self, present),
         };
         if wanted == present {
@@ -144,9 +154,9 @@ impl MeshAsset {
             sha256: self.sha256,
             bytes: self.bytes.clone(),
             companions: self.companions.clone(),
-            bvh: source.bvh.transformed(&transform).unwrap_or_else(|| Bvh::build(&mesh)),
+            search_tree: SearchTree::default(),
             mesh,
-            untransformed: Some(source.clone()),
+            untransformed: Some((source.clone(), transform)),
             drawn: DrawnAhead::default(),
         }))
     }

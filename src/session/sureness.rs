@@ -96,7 +96,7 @@ fn seen_points<'a>(object: &'a Object, camera_from_object: &Pose) -> impl Iterat
     let slack_mm = SEEN_PART * mesh.sphere().radius;
     let is_seen = move |point: &DVec3| {
         let Some(direction) = (*point - eye).try_normalize() else { return false };
-        let hit = object.mesh.bvh.cast(mesh, &Ray { origin: eye, direction });
+        let hit = object.mesh.tree().and_then(|tree| tree.cast(mesh, &Ray { origin: eye, direction }));
         // A ray to a corner may just miss it.
         hit.is_none_or(|hit| hit.distance_mm > point.distance(eye) - slack_mm)
     };

@@ -152,7 +152,7 @@ pub fn disc(radius_mm: f32) -> Arc<MeshAsset> {
         bytes: Arc::from([]),
         companions: Vec::new(),
         mesh,
-        bvh,
+        search_tree: bvh.into(),
         untransformed: None,
         drawn: Default::default(),
     })

@@ -39,7 +39,7 @@ fn asset(mesh: Mesh) -> Arc<MeshAsset> {
         bytes,
         companions: Vec::new(),
         mesh,
-        bvh,
+        search_tree: bvh.into(),
         untransformed: None,
         drawn: Default::default(),
     })

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::mesh_rest::{read_tree, write_tree};
 use super::wire::{Reader, Writer};
 use super::{Done, read_hash};
 use crate::formats::{NamedFile, kept};
 use crate::mesh::{
-    Bvh, CoarseMesh, DrawnAhead, DrawnMesh, Material, Mesh, MeshData, Paint, ShadingGroup, ShadingMesh,
+    CoarseMesh, DrawnAhead, DrawnMesh, Material, Mesh, MeshData, Paint, SearchTree, ShadingGroup, ShadingMesh,
 };
 use crate::photo::Pixels;
 use crate::scene::MeshAsset;
@@ -15,26 +16,43 @@ use crate::scene::MeshAsset;
 const NO_TEXTURE: u32 = u32::MAX;
 
 pub(super) fn write_mesh(asset: &MeshAsset, warnings: &[String]) -> Vec<u8> {
-    let data = asset.mesh.data();
-    let (nodes, order) = asset.bvh.to_parts();
     let mut writer = Writer::default();
     writer.bytes(asset.sha256.to_string().as_bytes());
+    let data = asset.mesh.data();
+    write_data(&mut writer, data, data.paint.as_ref());
+    writer.bytes(warnings.join("\n").as_bytes());
+    let drawn = DrawnMesh::ahead_of(&asset.mesh);
+    write_drawn(&mut writer, drawn.as_ref());
+    // The tree of a mesh that has a coarse copy follows with the rest.
+    if !drawn.is_some_and(|drawn| drawn.is_coarse_alone()) {
+        asset.tree().into_iter().for_each(|tree| write_tree(&mut writer, tree));
+    }
+    writer.finish()
+}
+
+pub(super) fn write_data(writer: &mut Writer, data: &MeshData, paint: Option<&Paint>) {
     writer.items(&data.positions_mm);
     writer.items(&data.triangles);
     writer.items(data.normals.as_deref().unwrap_or_default());
     writer.items(data.colors.as_deref().unwrap_or_default());
-    write_paint(&mut writer, data.paint.as_ref().unwrap_or(&Paint::default()));
-    writer.bytes(nodes);
-    writer.items(order);
-    writer.bytes(warnings.join("\n").as_bytes());
-    write_drawn(&mut writer, DrawnMesh::ahead_of(&asset.mesh).as_ref());
-    writer.finish()
+    write_paint(writer, paint.unwrap_or(&Paint::default()));
+}
+
+pub(super) fn read_data(reader: &mut Reader<'_>) -> Option<MeshData> {
+    Some(MeshData {
+        positions_mm: reader.items()?,
+        triangles: reader.items()?,
+        normals: Some(reader.items()?).filter(|normals| !normals.is_empty()),
+        colors: Some(reader.items()?).filter(|colors| !colors.is_empty()),
+        paint: Some(read_paint(reader)?).filter(|paint| !paint.materials.is_empty()),
+    })
 }
 
 fn write_drawn(writer: &mut Writer, drawn: Option<&DrawnMesh>) {
     writer.byte(u8::from(drawn.is_some()));
     let Some(drawn) = drawn else { return };
-    write_shading(writer, &drawn.shading);
+    writer.byte(u8::from(drawn.shading.is_some()));
+    drawn.shading.iter().for_each(|shading| write_shading(writer, shading));
     writer.byte(u8::from(drawn.coarse.is_some()));
     let Some((coarse, shading)) = &drawn.coarse else { return };
     // Its edges are all that is asked of it besides.
@@ -44,7 +62,7 @@ fn write_drawn(writer: &mut Writer, drawn: Option<&DrawnMesh>) {
     write_shading(writer, shading);
 }
 
-fn write_shading(writer: &mut Writer, shading: &ShadingMesh) {
+pub(super) fn write_shading(writer: &mut Writer, shading: &ShadingMesh) {
     writer.items(&shading.vertices);
     writer.items(&shading.indices);
     let groups = shading.groups.iter();
@@ -59,7 +77,7 @@ fn read_drawn(reader: &mut Reader<'_>) -> Option<Option<DrawnMesh>> {
     if reader.byte()? == 0 {
         return Some(None);
     }
-    let shading = read_shading(reader)?;
+    let shading = if reader.byte()? == 1 { Some(read_shading(reader)?) } else { None };
     if reader.byte()? == 0 {
         return Some(Some(DrawnMesh { shading, coarse: None }));
     }
@@ -70,7 +88,7 @@ fn read_drawn(reader: &mut Reader<'_>) -> Option<Option<DrawnMesh>> {
     Some(Some(DrawnMesh { shading, coarse }))
 }
 
-fn read_shading(reader: &mut Reader<'_>) -> Option<ShadingMesh> {
+pub(super) fn read_shading(reader: &mut Reader<'_>) -> Option<ShadingMesh> {
     let (vertices, indices) = (reader.items()?, reader.items()?);
     let groups: Vec<[u32; 3]> = reader.items()?;
     let group = |[texture, start, end]: [u32; 3]| ShadingGroup {
@@ -118,23 +136,19 @@ pub(super) fn read_mesh_reply(
     reader: &mut Reader<'_>,
 ) -> Option<Done> {
     let sha256 = read_hash(reader)?;
-    let data = MeshData {
-        positions_mm: reader.items()?,
-        triangles: reader.items()?,
-        normals: Some(reader.items()?).filter(|normals| !normals.is_empty()),
-        colors: Some(reader.items()?).filter(|colors| !colors.is_empty()),
-        paint: Some(read_paint(reader)?).filter(|paint| !paint.materials.is_empty()),
-    };
-    let bvh = Bvh::from_parts(reader.bytes()?, reader.items()?)?;
+    let data = read_data(reader)?;
     let warnings = String::from_utf8(reader.bytes()?.to_vec()).ok()?;
-    let drawn = DrawnAhead::new(read_drawn(reader)?);
+    let (drawn, search_tree) = match read_drawn(reader)? {
+        Some(drawn) if drawn.is_coarse_alone() => (DrawnAhead::promised(drawn), SearchTree::promised()),
+        drawn => (DrawnAhead::new(drawn), read_tree(reader)?.into()),
+    };
     let asset = MeshAsset {
         file_name: file.name.clone(),
         sha256,
         bytes: file.bytes.clone(),
         companions: kept(companions),
         mesh: Mesh::new(data).ok()?,
-        bvh,
+        search_tree,
         drawn,
         untransformed: None,
     };

@@ -4,6 +4,7 @@
 //! thread, so that one path is tested.
 
 mod mesh;
+mod mesh_rest;
 mod solver_mesh;
 pub mod symmetries;
 mod wire;
@@ -12,7 +13,7 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
 use crate::formats::{NamedFile, read_mesh_with, read_photo, read_photo_header};
-use crate::mesh::Mesh;
+use crate::mesh::{Bvh, Mesh, ShadingMesh};
 use crate::photo::{DepthPixels, Pixels, decode, decode_depth, thumbnail};
 use crate::platform::Background;
 use crate::scene::{MeshAsset, PhotoAsset, Sha256};
@@ -37,6 +38,8 @@ pub enum JobKind {
     SolverMesh,
     /// Of what [`symmetries::request`] makes of a mesh.
     Symmetries,
+    /// Of what [`mesh_rest::request`] makes of a mesh.
+    MeshRest,
 }
 
 impl JobKind {
@@ -49,6 +52,7 @@ impl JobKind {
             Self::Headers => 4,
             Self::SolverMesh => 5,
             Self::Symmetries => 6,
+            Self::MeshRest => 7,
         }
     }
 }
@@ -71,6 +75,8 @@ pub enum Done {
     Headers(Vec<Result<Arc<PhotoAsset>, String>>),
     SolverMesh(Arc<Mesh>),
     Symmetries(FoundSymmetries),
+    /// Nobody is told: the mesh has it.
+    MeshRest(Box<(Bvh, ShadingMesh)>),
 }
 
 /// What is asked of the worker.
@@ -86,6 +92,8 @@ pub struct Jobs {
     next_id: u64,
     waiting: VecDeque<(u64, Job)>,
     sent: HashMap<u64, Job>,
+    /// Meshes that are shown, and whose rest follows.
+    unfinished: HashMap<u64, Arc<MeshAsset>>,
 }
 
 impl Jobs {
@@ -96,6 +104,7 @@ impl Jobs {
             next_id: 0,
             waiting: VecDeque::new(),
             sent: HashMap::new(),
+            unfinished: HashMap::new(),
         }
     }
 
@@ -139,7 +148,7 @@ impl Jobs {
     pub fn poll(&mut self) -> Vec<(u64, NamedFile, Result<Done, String>)> {
         let replies = self.background.poll().into_iter();
         let known = replies.filter_map(|(id, reply)| Some((id, self.sent.remove(&id)?, reply)));
-        let done = known
+        let all: Vec<_> = known
             .map(|(id, Job { kind, file, companions }, reply)| {
                 let done = match reply {
                     Ok(bytes) => read_reply(kind, &file, &companions, &bytes),
@@ -148,8 +157,43 @@ impl Jobs {
                 (id, file, done)
             })
             .collect();
+        let done = all.into_iter().filter_map(|(id, file, done)| {
+            let done = self.take_rest(id, done)?;
+            if let Ok(Done::Mesh(mesh, _)) = &done {
+                self.ask_for_rest(mesh);
+            }
+            Some((id, file, done))
+        });
+        let done = done.collect();
         self.send_next();
         done
+    }
+
+    /// Is the rest of a mesh that is shown still on its way?
+    pub fn is_finishing_mesh(&self) -> bool {
+        !self.unfinished.is_empty()
+    }
+
+    fn ask_for_rest(&mut self, mesh: &Arc<MeshAsset>) {
+        if mesh.search_tree.is_awaited() {
+            let job = self.submit(JobKind::MeshRest, mesh_rest::request(mesh), &[], Urgency::Next);
+            self.unfinished.insert(job, mesh.clone());
+        }
+    }
+
+    /// Gives a mesh its rest; gives back what is none.
+    fn take_rest(&mut self, job: u64, done: Result<Done, String>) -> Option<Result<Done, String>> {
+        let Some(mesh) = self.unfinished.remove(&job) else { return Some(done) };
+        if let Ok(Done::MeshRest(rest)) = done {
+            let (tree, shading) = *rest;
+            mesh.search_tree.give(tree);
+            mesh.drawn.give_whole(shading);
+        } else {
+            log::warn!("{}: what follows a large mesh was not made ({:?})", mesh.file_name, done.err());
+            mesh.search_tree.withdraw();
+            mesh.drawn.withdraw();
+        }
+        None
     }
 }
 
@@ -205,6 +249,7 @@ fn answer(request: &[u8]) -> Option<Result<Vec<u8>, String>> {
         4 => Ok(write_headers(std::iter::once(&file).chain(&companions))),
         5 => solver_mesh::write(&file, &companions),
         6 => symmetries::write(&file),
+        7 => mesh_rest::write(&file),
         _ => read_mesh_with(&file, &companions)
             .map(|(asset, warnings)| write_mesh(&asset, &warnings))
             .map_err(|error| error.to_string()),
@@ -232,6 +277,7 @@ fn read_reply(
         }
         JobKind::SolverMesh => solver_mesh::read(&mut reader).map(|mesh| Done::SolverMesh(Arc::new(mesh))),
         JobKind::Symmetries => symmetries::read(&mut reader).map(Done::Symmetries),
+        JobKind::MeshRest => mesh_rest::read(&mut reader).map(|rest| Done::MeshRest(Box::new(rest))),
         JobKind::Mesh => read_mesh_reply(file, companions, &mut reader),
     };
     done.ok_or_else(damaged)
@@ -376,7 +422,39 @@ mod tests {
         let (expected, _) = read_mesh_with(&obj, &companions).unwrap();
         assert_eq!((&asset.mesh, &asset.companions), (&expected.mesh, &expected.companions));
         assert_eq!(*asset.mesh.paint().unwrap().textures[0], pixels);
-        assert_eq!(asset.bvh.to_parts(), expected.bvh.to_parts());
+        assert_eq!(asset.tree().unwrap().to_parts(), expected.tree().unwrap().to_parts());
+    }
+
+    #[test]
+    fn a_large_mesh_comes_without_its_tree_which_follows() {
+        let ply = crate::mesh::write_ply(&crate::mesh::test_shapes::sphere(100.0, 300, 300));
+        let ply = file("ball.ply", &ply);
+        let Ok(Done::Mesh(asset, _)) = run(JobKind::Mesh, &ply, &[]) else { panic!("no mesh") };
+        assert!(asset.tree().is_none() && asset.drawn.is_fresh());
+        let request = mesh_rest::request(&asset);
+        let mut jobs = Jobs::new(&egui::Context::default());
+        jobs.ask_for_rest(&asset);
+        assert!(jobs.is_finishing_mesh());
+        let rest = run(JobKind::MeshRest, &request, &[]);
+        let (job, _) = jobs.unfinished.iter().next().unwrap();
+        assert!(jobs.take_rest(*job, rest).is_none());
+        let (expected, _) = read_mesh_with(&ply, &[]).unwrap();
+        assert_eq!(asset.tree().unwrap().to_parts(), expected.tree().unwrap().to_parts());
+        assert_eq!(asset.drawn.take_whole(), Some(crate::mesh::shading_vertices(&expected.mesh)));
+        assert!(!jobs.is_finishing_mesh());
+    }
+
+    #[test]
+    fn a_large_mesh_whose_rest_fails_makes_it_itself() {
+        let ply = crate::mesh::write_ply(&crate::mesh::test_shapes::sphere(100.0, 300, 300));
+        let Ok(Done::Mesh(asset, _)) = run(JobKind::Mesh, &file("ball.ply", &ply), &[]) else {
+            panic!("no mesh")
+        };
+        let mut jobs = Jobs::new(&egui::Context::default());
+        jobs.ask_for_rest(&asset);
+        let (job, _) = jobs.unfinished.iter().next().unwrap();
+        assert!(jobs.take_rest(*job, Err("it crashed".to_owned())).is_none());
+        assert!(asset.tree().is_some());
     }
 
     #[test]

@@ -61,6 +61,11 @@ impl Loading {
         self.symmetry_jobs.insert(job, mesh.clone());
     }
 
+    /// Is a mesh on screen of which something still follows?
+    pub fn is_finishing_mesh(&self) -> bool {
+        self.jobs.is_finishing_mesh()
+    }
+
     pub fn is_worker_idle(&self) -> bool {
         self.jobs.is_idle()
     }
