@@ -22,6 +22,8 @@ impl PinPose {
             Effect::SnapAll(targets) => self.start_batch(targets),
             Effect::FindSymmetries(object) => self.find_symmetries(object),
             Effect::ShowExampleStudy => self.fetch_example_study(),
+            Effect::PickStudy => self.pick_study(),
+            Effect::ShowStudyReport => self.show_report(),
             Effect::PickResults => self.pick_results(),
             Effect::CopyText(text) => self.ctx.copy_text(text),
             Effect::NewScene => self.new_scene(),

@@ -219,6 +219,8 @@ fn effect_of(id: CommandId) -> Option<Effect> {
         CommandId::ExportFiles => Effect::AskForExport,
         CommandId::BuildStudy => Effect::BuildStudy,
         CommandId::ExampleStudy => Effect::ShowExampleStudy,
+        CommandId::ChangeStudy => Effect::PickStudy,
+        CommandId::StudyReport => Effect::ShowStudyReport,
         CommandId::WatchTrial => Effect::PickResults,
         CommandId::RenameObject => Effect::RenameSelected,
         CommandId::ZoomToObject => Effect::ZoomToObject,

@@ -178,6 +178,8 @@ commands![
     (Select8, "select_8", Keys, "Select object 8", "Select the eighth object of this photo", key("8"), needs_objects_here),
     (Select9, "select_9", Keys, "Select object 9", "Select the ninth object of this photo", key("9"), needs_objects_here),
     (BuildStudy, "build_study", Study, "Build a study…", "Choose samples, texts, tools and questions; export a folder for participants", None, needs_content),
+    (ChangeStudy, "change_study", Study, "Change a study…", "Choose the zip of an exported study and its true poses, and go on building it", None, always),
+    (StudyReport, "study_report", Study, "Report of results…", "A paper's tables and figures from participants' result files", None, always),
     (WatchTrial, "watch_trial", Study, "Watch a trial…", "Choose a study's zip and a participant's results, and watch what was done", None, always),
     (ExampleStudy, "example_study", Study, "Try the example study", "See a study as its participants do", None, always),
     (TogglePalette, "palette", Help, "Find a command…", "Every command by its name", ctrl("K"), always),

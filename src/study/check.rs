@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::markdown::{Block, blocks};
 use super::pack::{Draft, Pack, Role};
 use super::{Assignment, SampleSets, Saving, Schedule, StartPose, Study, StudyError};
 use crate::scene::Scene;
@@ -44,6 +45,7 @@ pub fn check(draft: &Draft, scene: &Scene, pack: Result<&Pack, &StudyError>) -> 
         }
     }
     settings(&draft.study, &mut findings);
+    pictures(draft, &mut findings);
     truths(draft, scene, &mut findings);
     findings.sort_by_key(|finding| !finding.is_error);
     findings.dedup();
@@ -69,6 +71,27 @@ fn settings(study: &Study, findings: &mut Vec<Finding>) {
     }
     if study.questionnaires.is_empty() {
         findings.push(Finding::hint("There is no questionnaire"));
+    }
+}
+
+/// Pictures that a text names, and that are there.
+fn pictures(draft: &Draft, findings: &mut Vec<Finding>) {
+    let texts = &draft.study.texts;
+    let of_conditions = draft.study.conditions.iter().map(|condition| &condition.instructions);
+    let all = [&texts.consent, &texts.instructions, &texts.thanks].into_iter().chain(of_conditions);
+    let shown: BTreeSet<String> = all
+        .flat_map(|text| blocks(text))
+        .filter_map(|block| match block {
+            Block::Picture { name, .. } => Some(name),
+            _ => None,
+        })
+        .collect();
+    let added: BTreeSet<&String> = draft.pictures.iter().map(|(name, _)| name).collect();
+    for name in shown.iter().filter(|name| !added.contains(name)) {
+        findings.push(Finding::error(format!("A text shows {name}, which is not among the pictures")));
+    }
+    for name in added.into_iter().filter(|name| !shown.contains(*name)) {
+        findings.push(Finding::hint(format!("The picture {name} is loaded, and no text shows it")));
     }
 }
 

@@ -22,7 +22,10 @@ impl StudyError {
     pub fn json(error: &serde_json::Error) -> Self {
         let text = error.to_string();
         // serde_json repeats the position at the end of its message.
-        let reason = text.split(" at line ").next().unwrap_or(&text).to_owned();
+        let reason = match error.is_eof() {
+            true => "the file ends in the middle: it was cut short".to_owned(),
+            false => text.split(" at line ").next().unwrap_or(&text).to_owned(),
+        };
         Self::Json { line: error.line(), column: error.column(), reason }
     }
 

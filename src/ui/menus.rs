@@ -105,7 +105,11 @@ pub const MENUS: [MenuPlan; 6] = [
     },
     MenuPlan {
         title: "Study",
-        groups: &[&[CommandId::BuildStudy, CommandId::WatchTrial], &[CommandId::ExampleStudy]],
+        groups: &[
+            &[CommandId::BuildStudy, CommandId::ChangeStudy],
+            &[CommandId::StudyReport, CommandId::WatchTrial],
+            &[CommandId::ExampleStudy],
+        ],
     },
     MenuPlan { title: "Help", groups: &[&[CommandId::TogglePalette, CommandId::ToggleShortcuts]] },
 ];

@@ -46,6 +46,7 @@ fn harness(screen: Screen) -> Harness<'static, Shown> {
                 pictures: &shown.pictures,
                 page: 1,
                 is_preview: false,
+                can_rehearse: false,
             };
             let around = quiet_surroundings(&hands);
             draw(ui, &shown.session, &view, &around, &mut shown.state, &mut shown.requests);

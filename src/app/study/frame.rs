@@ -41,6 +41,7 @@ impl PinPose {
             scenes: &[],
             store: ui::StoreView::default(),
             builder: None,
+            report: None,
             update_ready: false,
             dataset: None,
             files_hover: false,

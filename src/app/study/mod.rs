@@ -2,10 +2,12 @@
 
 mod allowed;
 mod arriving;
+mod changing;
 mod frame;
 mod keeping;
 mod requests;
 mod sending;
+mod simulating;
 mod trial;
 mod view;
 mod watching;
@@ -20,14 +22,20 @@ use crate::platform::{self, Storage};
 use crate::scene::{MeshAsset, PhotoAsset};
 use crate::session::Session;
 use crate::study::pack::StudyFiles;
-use crate::study::{AskedFor, Environment, EventKind, Participant, Participation, Plan, Reopened, Step};
+use crate::study::{
+    AskedFor, Environment, EventKind, Participant, Participation, Plan, Reopened, Results, Step, Truth,
+};
 use crate::ui::study::{Pictures, StudyRequest, TlxPair};
 
 use arriving::Arrived;
+pub use changing::Opened;
 use keeping::Keeping;
 pub use keeping::is_kept_id;
 use sending::Sender;
 pub use watching::Picked;
+
+/// Of a text's picture, in pixels: twice as wide as the column of text.
+const MOST_PICTURE_SIDE: u32 = 1280;
 
 /// A study that somebody takes part in, from its address to the way out.
 pub struct Participating {
@@ -45,8 +53,18 @@ pub struct Participating {
     backend: String,
     /// What the researcher had open, to come back to after a preview.
     before: Option<Box<Session>>,
-    /// Results that are to be watched.
-    watched: Option<crate::study::Results>,
+    purpose: Purpose,
+    /// Of a study that was just built: what its researcher alone knows.
+    truth: Option<Truth>,
+}
+
+/// What a study was opened for.
+enum Purpose {
+    TakePart,
+    /// To watch these results.
+    Watch(Box<Results>),
+    /// To be changed in the builder, with its true poses if they were at hand.
+    Change(Option<Box<Truth>>),
 }
 
 /// What a participant's address says.
@@ -71,6 +89,8 @@ enum State {
     },
     Running(Box<Running>),
     Watching(Box<watching::Watching>),
+    /// On its way into the builder.
+    ToChange(Box<Opened>),
 }
 
 /// A study with all of its files read.
@@ -139,7 +159,8 @@ impl PinPose {
             visibility,
             backend: self.backend.clone(),
             before: None,
-            watched: None,
+            purpose: Purpose::TakePart,
+            truth: None,
         }
     }
 
@@ -159,6 +180,7 @@ impl PinPose {
         self.study = Some(study);
         self.tick_trial(now_ms);
         self.tick_watching(now_ms);
+        self.tick_study_to_change();
         if let Some(study) = &mut self.study
             && let State::Running(running) = &mut study.state
         {
@@ -168,8 +190,10 @@ impl PinPose {
     }
 
     pub(super) fn take_study_request(&mut self, request: StudyRequest) {
-        if request == StudyRequest::LeavePreview {
-            return self.leave_preview();
+        match request {
+            StudyRequest::LeavePreview => return self.leave_preview(),
+            StudyRequest::Rehearse(wanted) => return self.rehearse(wanted),
+            _ => {}
         }
         let Some(study) = &mut self.study else { return };
         let now_ms = platform::now_ms();
@@ -196,16 +220,24 @@ impl PinPose {
     }
 
     fn leave_preview(&mut self) {
-        if let Some(before) =
-            self.study.take_if(|study| study.before.is_some()).and_then(|study| study.before)
-        {
+        let Some(study) = self.study.take_if(|study| study.before.is_some()) else { return };
+        let was_built = study.truth.is_some();
+        if let Some(before) = study.before {
             self.session = *before;
             self.hands = crate::interact::Hands::default();
+        }
+        if was_built {
+            self.ui_state.study_builder.show();
         }
     }
 }
 
 impl Participating {
+    /// Of a preview: its researcher's.
+    pub fn know_truth(&mut self, truth: Truth) {
+        self.truth = Some(truth);
+    }
+
     fn fail(&mut self, text: impl Into<String>, can_retry: bool) {
         self.state = State::Problem { text: text.into(), can_retry };
         self.turn_page();
@@ -223,8 +255,14 @@ impl Participating {
             return self.fail(problem, true);
         }
         self.show_pictures(&ready);
-        if let Some(results) = self.watched.take() {
-            return self.watch(ready, results);
+        match std::mem::replace(&mut self.purpose, Purpose::TakePart) {
+            Purpose::TakePart => {}
+            Purpose::Watch(results) => return self.watch(ready, *results),
+            Purpose::Change(truth) => {
+                self.open_to_change(&ready, truth.as_deref());
+                self.purpose = Purpose::Change(truth);
+                return;
+            }
         }
         let named = |name: &String| platform::page_parameter(name).filter(|id| !id.trim().is_empty());
         let id = match self.link {
@@ -242,7 +280,9 @@ impl Participating {
         for asset in &ready.files.study.texts.pictures {
             let decoded = ready.files.file(asset).and_then(|file| crate::photo::decode(&file.bytes).ok());
             if let Some(decoded) = decoded {
-                self.pictures.insert(&self.ctx, &asset.name, &decoded.pixels);
+                // More than a graphics card may take, and than the column shows.
+                let pixels = crate::photo::thumbnail(&decoded.pixels, MOST_PICTURE_SIDE);
+                self.pictures.insert(&self.ctx, &asset.name, &pixels);
             }
         }
     }

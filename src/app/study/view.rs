@@ -11,14 +11,14 @@ impl Participating {
             State::Running(running) => Some(&running.ready.files.study),
             State::AskId(ready) | State::LookingBack { ready, .. } => Some(&ready.files.study),
             State::Watching(watching) => Some(watching.study()),
-            State::Loading(_) | State::Problem { .. } => None,
+            State::Loading(_) | State::Problem { .. } | State::ToChange(_) => None,
         };
         let screen = match &self.state {
             State::Loading(loading) => {
                 let (done, all) = loading.progress();
                 StudyScreen::Loading { done, all }
             }
-            State::LookingBack { .. } => StudyScreen::Loading { done: 0, all: 0 },
+            State::LookingBack { .. } | State::ToChange(_) => StudyScreen::Loading { done: 0, all: 0 },
             State::Problem { text, can_retry } => StudyScreen::Problem { text, can_retry: *can_retry },
             State::AskId(_) => StudyScreen::AskId,
             State::Running(running) => running.screen(busy),
@@ -31,6 +31,7 @@ impl Participating {
             pictures: &self.pictures,
             page: self.page,
             is_preview: self.link.is_none(),
+            can_rehearse: self.can_rehearse(),
         }
     }
 

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::{Participating, Ready, State};
+use super::{Participating, Purpose, Ready, State};
 use crate::app::PinPose;
 use crate::platform::{self, FileBytes};
 use crate::session::{Command, Notice, Session};
@@ -155,7 +155,7 @@ impl PinPose {
         };
         self.preview_study(zip);
         if let Some(study) = &mut self.study {
-            study.watched = results;
+            study.purpose = results.map_or(Purpose::TakePart, |results| Purpose::Watch(Box::new(results)));
         }
     }
 

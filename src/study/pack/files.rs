@@ -68,6 +68,12 @@ impl StudyFiles {
         Some(NamedFile { name: asset.name.clone(), bytes: self.files.get(&asset.path)?.clone() })
     }
 
+    /// All that have come, with their SHA-256 and the researcher's names.
+    pub fn named_files(&self) -> Vec<(String, NamedFile)> {
+        let assets = self.study.assets().into_iter();
+        assets.filter_map(|asset| Some((asset.sha256.clone(), self.file(asset)?))).collect()
+    }
+
     pub fn record(&self) -> StudyRecord {
         StudyRecord {
             id: self.study.id.clone(),

@@ -6,6 +6,7 @@ mod page;
 mod practice;
 mod questionnaire;
 mod questions;
+mod rehearsal;
 mod replay;
 mod text;
 mod trial;
@@ -20,6 +21,7 @@ use crate::study::questionnaire::TlxScale;
 use crate::study::{Answer, AnswerValue, Condition, Feedback, Item, PairChoice, Questionnaire, Tool};
 
 pub use finish::{FinishView, Sending};
+pub use rehearsal::Rehearsal;
 pub use replay::ReplayView;
 pub use text::Pictures;
 pub use trial::TrialView;
@@ -90,6 +92,8 @@ pub struct StudyView<'a> {
     pub page: usize,
     /// A researcher looks at it: there is a way back.
     pub is_preview: bool,
+    /// A program may take part in it, to show the report.
+    pub can_rehearse: bool,
 }
 
 /// What the participant asks for.
@@ -116,6 +120,7 @@ pub enum StudyRequest {
     Forget,
     /// A researcher has seen enough.
     LeavePreview,
+    Rehearse(Rehearsal),
     WatchTrial(usize),
     Play(bool),
     /// Milliseconds since the trial was shown.
@@ -136,6 +141,8 @@ pub struct State {
     help_is_open: bool,
     /// The next frame shows what is below.
     turn_over: bool,
+    /// The dialog of a rehearsal is open.
+    rehearsal: Option<Rehearsal>,
 }
 
 impl State {

@@ -4,7 +4,7 @@ use egui::scroll_area::ScrollAreaOutput;
 use egui::{Align, Button, Checkbox, Layout, Rect, RichText, ScrollArea, Stroke, TextEdit, Ui, Vec2};
 
 use super::{State, StudyRequest, StudyScreen, StudyView};
-use super::{finish, practice, questionnaire, questions, text};
+use super::{finish, practice, questionnaire, questions, rehearsal, text};
 use crate::ui::{study::allowed_keys, theme};
 
 /// As long as lines of text are read well.
@@ -14,7 +14,7 @@ const BUTTON: Vec2 = Vec2::new(160.0, 36.0);
 
 pub fn draw(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut Vec<StudyRequest>) {
     if view.is_preview {
-        preview_bar(ui, requests);
+        rehearsal::bar(ui, view, state, requests);
     }
     // A new screen begins at its top.
     let area = ScrollArea::vertical().id_salt(("study page", view.page)).auto_shrink(false);
@@ -49,17 +49,6 @@ fn more_below(ui: &mut Ui, shown: &ScrollAreaOutput<()>) -> bool {
         Rect::from_center_size(visible.center_bottom() - Vec2::new(0.0, 22.0), Vec2::new(130.0, 28.0));
     let stroke = Stroke::new(1.0, theme::accent(ui.visuals()));
     ui.put(place, Button::new("More below").corner_radius(14.0).stroke(stroke)).clicked()
-}
-
-fn preview_bar(ui: &mut Ui, requests: &mut Vec<StudyRequest>) {
-    ui.horizontal(|ui| {
-        ui.add_space(12.0);
-        let words = RichText::new("Preview: nothing is sent or kept").color(theme::warning(ui.visuals()));
-        ui.label(words);
-        if ui.button("Back to the builder").clicked() {
-            requests.push(StudyRequest::LeavePreview);
-        }
-    });
 }
 
 fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut Vec<StudyRequest>) {
