@@ -23,6 +23,7 @@ impl PinPose {
             Effect::FindSymmetries(object) => self.find_symmetries(object),
             Effect::ShowExampleStudy => self.fetch_example_study(),
             Effect::PickStudy => self.pick_study(),
+            Effect::ShowKeptResults => self.show_kept(),
             Effect::ShowStudyReport => self.show_report(),
             Effect::PickResults => self.pick_results(),
             Effect::CopyText(text) => self.ctx.copy_text(text),

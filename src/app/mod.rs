@@ -13,6 +13,7 @@ mod events;
 mod exporting;
 mod input;
 mod jobs;
+mod kept;
 mod loading;
 mod mask_layer;
 mod motion;
@@ -64,6 +65,7 @@ pub struct PinPose {
     motion: Option<motion::Motion>,
     building: building::Building,
     reporting: reporting::Reporting,
+    kept: kept::Kept,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
@@ -118,6 +120,7 @@ impl PinPose {
             motion: None,
             building: building::Building::default(),
             reporting: reporting::Reporting::default(),
+            kept: kept::Kept::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
@@ -182,6 +185,7 @@ impl eframe::App for PinPose {
         self.tick_motion();
         self.tick_building();
         self.tick_reporting();
+        self.tick_kept();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
@@ -217,6 +221,7 @@ impl eframe::App for PinPose {
             },
             builder: Some(self.building.view()),
             report: Some(self.reporting.view()),
+            kept: Some(self.kept.view()),
             update_ready: platform::update_offer().is_some(),
             dataset: self.datasets.view(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
@@ -243,6 +248,9 @@ impl eframe::App for PinPose {
         }
         if let Some(build) = asked.study_build {
             self.start_building(build);
+        }
+        if let Some(request) = asked.kept {
+            self.take_kept_request(request);
         }
         if let Some(request) = asked.report {
             self.take_report_request(request);

@@ -235,6 +235,14 @@ impl PinPose {
         self.ctx.request_repaint();
     }
 
+    /// Adds a file to those that a report is made of, and shows them.
+    pub(super) fn add_to_report(&mut self, file: FileBytes) {
+        self.ui_state.kept_dialog.close();
+        self.reporting.take(vec![Ok(file)]);
+        self.show_report();
+        self.ctx.request_repaint();
+    }
+
     pub(super) fn take_report_request(&mut self, request: ReportRequest) {
         self.ctx.request_repaint();
         if request == ReportRequest::AddFiles {

@@ -26,7 +26,7 @@ pub use native::{
     send_event, send_request, show_page, spawn, update_offer, wasm_bytes, watch_dropped_folders,
     watch_hidden, when_left,
 };
-pub use network::{BrowserFacts, NetworkFuture, Request};
+pub use network::{BrowserFacts, FetchError, FetchFuture, NetworkFuture, Request};
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
 };

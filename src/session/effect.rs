@@ -37,6 +37,8 @@ pub enum Effect {
     PickStudy,
     /// The example study, as its participants see it.
     ShowExampleStudy,
+    /// Results that are kept here.
+    ShowKeptResults,
     /// A report of results, from their files.
     ShowStudyReport,
     /// A study and a participant's results, to be watched.

@@ -221,6 +221,7 @@ fn effect_of(id: CommandId) -> Option<Effect> {
         CommandId::ExampleStudy => Effect::ShowExampleStudy,
         CommandId::ChangeStudy => Effect::PickStudy,
         CommandId::StudyReport => Effect::ShowStudyReport,
+        CommandId::KeptResults => Effect::ShowKeptResults,
         CommandId::WatchTrial => Effect::PickResults,
         CommandId::RenameObject => Effect::RenameSelected,
         CommandId::ZoomToObject => Effect::ZoomToObject,

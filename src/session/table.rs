@@ -181,6 +181,7 @@ commands![
     (ChangeStudy, "change_study", Study, "Change a study…", "Choose the zip of an exported study and its true poses, and go on building it", None, always),
     (StudyReport, "study_report", Study, "Report of results…", "A paper's tables and figures from participants' result files", None, always),
     (WatchTrial, "watch_trial", Study, "Watch a trial…", "Choose a study's zip and a participant's results, and watch what was done", None, always),
+    (KeptResults, "kept_results", Study, "Results kept here…", "What was done in studies in this browser: download or remove it", None, always),
     (ExampleStudy, "example_study", Study, "Try the example study", "See a study as its participants do", None, always),
     (TogglePalette, "palette", Help, "Find a command…", "Every command by its name", ctrl("K"), always),
     (ToggleShortcuts, "shortcuts", Help, "Mouse and keys", "All gestures and keys on one sheet", key("?"), always),

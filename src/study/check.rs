@@ -25,6 +25,9 @@ impl Finding {
     }
 }
 
+/// A file of a study may be so large: the largest photos and meshes that the program takes are smaller.
+const MOST_ASSET_BYTES: u64 = 512 << 20;
+
 /// More than this takes a minute over a slow line.
 const LARGE_BYTES: u64 = 50 << 20;
 
@@ -148,6 +151,10 @@ pub fn usable(study: &Study) -> Result<(), StudyError> {
         let leads_out = asset.path.split(['/', '\\']).any(|part| part == ".." || part.is_empty());
         if leads_out || asset.path.contains(':') {
             return Err(StudyError::at(asset.path.clone(), "a path beside study.json expected"));
+        }
+        if asset.bytes > MOST_ASSET_BYTES {
+            let (path, bytes) = (asset.path.clone(), asset.bytes);
+            return Err(StudyError::TooLarge { path, bytes, most: MOST_ASSET_BYTES });
         }
     }
     protocol(study)

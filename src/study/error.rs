@@ -14,6 +14,10 @@ pub enum StudyError {
     Format { expected: &'static str, found: String },
     #[error("of version {found}; this page reads up to version {supported}: reload the page to update it")]
     Version { found: u64, supported: u64 },
+    #[error("{0}: the file has another content than the study says: it was changed or cut short")]
+    Changed(String),
+    #[error("{path}: {bytes} bytes, where at most {most} are loaded")]
+    TooLarge { path: String, bytes: u64, most: u64 },
     #[error("{0}")]
     Pack(String),
 }

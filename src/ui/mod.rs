@@ -5,8 +5,10 @@ mod dataset_dialog;
 mod dialogs;
 mod export_dialog;
 mod icons;
+mod kept_dialog;
 mod keymap;
 mod menus;
+mod once;
 mod palette;
 mod panels;
 mod paste_dialog;
@@ -37,6 +39,7 @@ use crate::solve::symmetry::FoundSymmetries;
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
 pub use export_dialog::ExportRequest;
+pub use kept_dialog::{KeptRequest, KeptView};
 pub use keymap::{Binding, Keymap, Refusal};
 pub use preferences::{DragModifier, ModifierKey, ModifierMap, Preferences, ThemeChoice};
 pub use report_dialog::{ReportRequest, ReportStage, ReportView};
@@ -72,6 +75,7 @@ pub struct UiState {
     split: viewport::SplitState,
     pub study_builder: study_builder::State,
     pub report_dialog: report_dialog::State,
+    pub kept_dialog: kept_dialog::State,
     /// Of the study that somebody takes part in.
     pub study: study::State,
 }
@@ -146,6 +150,8 @@ pub struct Surroundings<'a> {
     pub builder: Option<BuilderView<'a>>,
     /// And of the report of one.
     pub report: Option<ReportView<'a>>,
+    /// Results of studies that are kept in this browser.
+    pub kept: Option<KeptView<'a>>,
 }
 
 impl Surroundings<'_> {
@@ -211,6 +217,7 @@ pub struct Asked {
     /// Pictures for a study's texts are to be picked.
     pub study_pictures: bool,
     pub report: Option<ReportRequest>,
+    pub kept: Option<KeptRequest>,
 }
 
 /// Draws a whole frame.
@@ -259,6 +266,7 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
     }
     study_builder::draw(ui.ctx(), session, around.builder.as_ref(), &mut state.study_builder, &mut asked);
     report_dialog::draw(ui.ctx(), around.report.as_ref(), &mut state.report_dialog, &mut asked.report);
+    kept_dialog::draw(ui.ctx(), around.kept.as_ref(), &mut state.kept_dialog, &mut asked.kept);
     scenes_dialog::draw(ui.ctx(), around, &mut state.scenes_dialog, &mut asked.scene_requests);
     match state.toasts.draw(ui.ctx()) {
         Some(Offer::Workspace) => asked.commands.push(Command::Run(CommandId::ExportWorkspace)),

@@ -2,12 +2,10 @@
 
 mod tables;
 
-use egui::{
-    Align, Button, Context, DragValue, Grid, Id, Layout, Modal, ProgressBar, RichText, ScrollArea, Ui, Vec2,
-};
+use egui::{Align, Button, Context, DragValue, Grid, Layout, ProgressBar, RichText, ScrollArea, Ui, Vec2};
 
 use super::icons::{Icon, draw as draw_icon};
-use super::theme;
+use super::{once, theme};
 use crate::study::report::{Overview, Part, Report, ReportOptions};
 
 const SIZE: Vec2 = Vec2::new(760.0, 560.0);
@@ -74,7 +72,7 @@ pub fn draw(
     asked: &mut Option<ReportRequest>,
 ) {
     let (true, Some(view)) = (state.is_open, view) else { return };
-    let modal = Modal::new(Id::unique("study report")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| {
+    let modal = once::modal(ctx, "study report", theme::dialog_frame(ctx), |ui| {
         let size = SIZE.min(ui.ctx().content_rect().size() - Vec2::splat(64.0));
         ui.set_min_size(size);
         ui.set_max_size(size);

@@ -24,6 +24,7 @@ pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
         busy: None,
         builder: None,
         report: None,
+        kept: None,
         update_ready: false,
         files_hover: false,
         dataset: None,

@@ -1,5 +1,6 @@
 //! A study that was exported comes back into the builder: its photos and objects as a new scene, its settings as the draft.
 
+use super::words::Trouble;
 use super::{Participating, Purpose, State};
 use crate::app::PinPose;
 use crate::platform;
@@ -57,7 +58,7 @@ impl PinPose {
         }
         let opened = match &study.state {
             State::ToChange(opened) => Ok(opened.clone()),
-            State::Problem { text, .. } => Err(text.clone()),
+            State::Problem(trouble) => Err(format!("{} {}", trouble.text, trouble.details)),
             _ => return,
         };
         self.leave_preview();
@@ -100,7 +101,7 @@ impl Participating {
     pub(super) fn open_to_change(&mut self, ready: &super::Ready, truth: Option<&Truth>) {
         match reopened(&ready.files, &ready.photos, &ready.meshes, truth) {
             Ok(opened) => self.state = State::ToChange(Box::new(opened)),
-            Err(error) => self.fail(format!("The study cannot be changed: {error}"), false),
+            Err(error) => self.fail(Trouble::of("The study cannot be changed.", error.to_string(), false)),
         }
     }
 }

@@ -42,6 +42,7 @@ impl PinPose {
             store: ui::StoreView::default(),
             builder: None,
             report: None,
+            kept: None,
             update_ready: false,
             dataset: None,
             files_hover: false,

@@ -3,6 +3,7 @@
 mod allowed;
 mod arriving;
 mod changing;
+mod feedback;
 mod frame;
 mod keeping;
 mod requests;
@@ -11,9 +12,10 @@ mod simulating;
 mod trial;
 mod view;
 mod watching;
+mod words;
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -30,9 +32,10 @@ use crate::ui::study::{Pictures, StudyRequest, TlxPair};
 use arriving::Arrived;
 pub use changing::Opened;
 use keeping::Keeping;
-pub use keeping::is_kept_id;
+pub use keeping::{is_kept_id, newest_kept};
 use sending::Sender;
 pub use watching::Picked;
+use words::Trouble;
 
 /// Of a text's picture, in pixels: twice as wide as the column of text.
 const MOST_PICTURE_SIDE: u32 = 1280;
@@ -43,6 +46,11 @@ pub struct Participating {
     /// What the page's address says, or nothing for a preview.
     link: Option<Link>,
     state: State,
+    /// The study's, once they are known.
+    title: String,
+    contact: String,
+    /// When files that did not come are asked for again.
+    refetch_at_ms: Option<f64>,
     pictures: Pictures,
     /// Grows with every screen.
     page: usize,
@@ -75,17 +83,16 @@ pub struct Link {
 
 enum State {
     /// `study.json`, its files, and what is made of them.
-    Loading(Box<arriving::Loading>),
-    Problem {
-        text: String,
-        can_retry: bool,
-    },
+    /// Nothing until `study.json` is here.
+    Loading(Option<Box<Ready>>),
+    Problem(Trouble),
     /// All is here, but not who takes part.
     AskId(Box<Ready>),
-    /// What is kept of an earlier visit is on its way.
+    /// What is kept of an earlier visit is on its way; or it is here, and waits for the study's files.
     LookingBack {
         ready: Box<Ready>,
         participant: Participant,
+        kept: Option<Box<Participation>>,
     },
     Running(Box<Running>),
     Watching(Box<watching::Watching>),
@@ -93,12 +100,14 @@ enum State {
     ToChange(Box<Opened>),
 }
 
-/// A study with all of its files read.
+/// A study with what has come of its files, read.
 pub struct Ready {
     files: StudyFiles,
     /// By their paths in the study.
     photos: BTreeMap<String, Arc<PhotoAsset>>,
     meshes: BTreeMap<String, Arc<MeshAsset>>,
+    /// What the worker has been given.
+    submitted: BTreeSet<String>,
 }
 
 /// A participation on screen.
@@ -112,6 +121,10 @@ struct Running {
     sender: Sender,
     /// Why the sample that comes next cannot be shown.
     problem: Option<String>,
+    /// It cannot be shown yet: its files are on their way.
+    waits: bool,
+    /// A practice pose was just confirmed: what was wrong with it is still to be drawn.
+    shows_new_feedback: bool,
     /// When the page goes on by itself.
     redirect_at_ms: Option<f64>,
 }
@@ -151,7 +164,10 @@ impl PinPose {
         Participating {
             ctx: self.ctx.clone(),
             link,
-            state: State::Loading(Box::default()),
+            state: State::Loading(None),
+            title: String::new(),
+            contact: String::new(),
+            refetch_at_ms: None,
             pictures: Pictures::default(),
             page: 0,
             arrived: Rc::default(),
@@ -172,12 +188,13 @@ impl PinPose {
     pub(super) fn tick_study(&mut self) {
         let Some(mut study) = self.study.take() else { return };
         let now_ms = platform::now_ms();
-        study.tick_arriving(&mut self.loading);
+        study.tick_arriving(&mut self.loading, now_ms);
         if let State::Running(running) = &mut study.state {
             let hidden: Vec<(bool, f64)> = study.visibility.borrow_mut().drain(..).collect();
             running.tick_clock(&hidden, now_ms);
         }
         self.study = Some(study);
+        self.draw_feedback();
         self.tick_trial(now_ms);
         self.tick_watching(now_ms);
         self.tick_study_to_change();
@@ -199,7 +216,7 @@ impl PinPose {
         let now_ms = platform::now_ms();
         match (&mut study.state, request) {
             (State::AskId(_), StudyRequest::Id(id)) => study.look_back(&id),
-            (State::Problem { .. }, StudyRequest::Retry) => study.fetch_study(),
+            (State::Problem(_), StudyRequest::Retry) => study.fetch_study(),
             (State::Watching(watching), request) => {
                 let done = watching.take_request(&request, now_ms);
                 if let Err(problem) = done {
@@ -238,8 +255,8 @@ impl Participating {
         self.truth = Some(truth);
     }
 
-    fn fail(&mut self, text: impl Into<String>, can_retry: bool) {
-        self.state = State::Problem { text: text.into(), can_retry };
+    fn fail(&mut self, trouble: Trouble) {
+        self.state = State::Problem(trouble);
         self.turn_page();
     }
 
@@ -249,10 +266,10 @@ impl Participating {
         self.ctx.request_repaint();
     }
 
-    /// All files are here: the participant is known from the link, or asked for.
+    /// The texts can be shown: the participant is known from the link, or asked for.
     fn begin(&mut self, ready: Ready) {
         if let Some(problem) = self.cannot_work() {
-            return self.fail(problem, true);
+            return self.fail(Trouble::of(problem, "", true));
         }
         self.show_pictures(&ready);
         match std::mem::replace(&mut self.purpose, Purpose::TakePart) {
@@ -289,7 +306,7 @@ impl Participating {
 
     /// Looks for what is kept of an earlier visit.
     fn look_back(&mut self, id: &str) {
-        let state = std::mem::replace(&mut self.state, State::Loading(Box::default()));
+        let state = std::mem::replace(&mut self.state, State::Loading(None));
         let State::AskId(ready) = state else {
             self.state = state;
             return;
@@ -299,7 +316,7 @@ impl Participating {
             .filter_map(|(name, parameter)| Some((name.clone(), platform::page_parameter(parameter)?)));
         let participant = Participant { id: id.to_owned(), recruiter: given.collect() };
         let kept = self.link.as_ref().map(|_| keeping::kept_id(&ready.files.study.id, id));
-        self.state = State::LookingBack { ready, participant };
+        self.state = State::LookingBack { ready, participant, kept: None };
         match kept {
             Some(kept) => self.load_kept(&kept),
             None => self.run(None),
@@ -308,20 +325,23 @@ impl Participating {
 
     /// Begins, or goes on where an earlier visit ended.
     fn run(&mut self, kept: Option<Participation>) {
-        let state = std::mem::replace(&mut self.state, State::Loading(Box::default()));
-        let State::LookingBack { ready, participant } = state else { return };
+        let state = std::mem::replace(&mut self.state, State::Loading(None));
+        let State::LookingBack { ready, participant, .. } = state else { return };
         let now_ms = platform::now_ms();
         let is_same = |kept: &Participation| kept.results.study.sha256 == ready.files.sha256;
         let reopened = kept.filter(is_same).map(|kept| kept.reopen(ready.files.study.resume, now_ms));
         let participation = match reopened {
             Some(Reopened::Blocked) => {
                 let text = "This study was begun here before, and it cannot be gone on with.";
-                return self.fail(text, false);
+                return self.fail(Trouble::of(text, "", false));
             }
             Some(Reopened::GoesOn(participation) | Reopened::Done(participation)) => *participation,
             Some(Reopened::Restarts) | None => match self.fresh(&ready, participant, now_ms) {
                 Ok(participation) => participation,
-                Err(problem) => return self.fail(problem, false),
+                Err(problem) => {
+                    let text = "You cannot take part with this link.";
+                    return self.fail(Trouble::of(text, problem, false));
+                }
             },
         };
         let id = participation.results.participant.id.clone();
@@ -338,6 +358,8 @@ impl Participating {
             keeping,
             sender,
             problem: None,
+            waits: false,
+            shows_new_feedback: false,
             redirect_at_ms: None,
         };
         running.enter(now_ms);

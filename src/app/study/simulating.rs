@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{Participating, Ready, State};
+use super::Participating;
 use crate::app::PinPose;
 use crate::formats::zip_of_files;
 use crate::platform;
@@ -14,18 +14,9 @@ use crate::study::{Results, results_name};
 use crate::ui::study::Rehearsal;
 
 impl Participating {
-    /// The study's files, once all of them are here.
-    fn ready(&self) -> Option<&Ready> {
-        match &self.state {
-            State::AskId(ready) | State::LookingBack { ready, .. } => Some(ready),
-            State::Running(running) => Some(&running.ready),
-            State::Loading(_) | State::Problem { .. } | State::Watching(_) | State::ToChange(_) => None,
-        }
-    }
-
     /// Only who built the study knows what its samples' poses are.
     pub(super) fn can_rehearse(&self) -> bool {
-        self.truth.is_some() && self.ready().is_some()
+        self.truth.is_some() && self.ready().is_some_and(super::Ready::is_complete)
     }
 
     fn rehearse(&self, wanted: Rehearsal) -> Result<(Vec<Results>, ReportFiles), String> {

@@ -50,11 +50,14 @@ impl StudyFiles {
     /// A file that has come; refused if it is not what the study speaks of.
     pub fn add(&mut self, asset: &Asset, bytes: Arc<[u8]>) -> Result<(), StudyError> {
         if Sha256::of(&bytes).to_string() != asset.sha256 {
-            let reason = "the file has another content than the study says: it was changed or cut short";
-            return Err(StudyError::at(asset.path.clone(), reason));
+            return Err(StudyError::Changed(asset.path.clone()));
         }
         self.files.insert(asset.path.clone(), bytes);
         Ok(())
+    }
+
+    pub fn has(&self, asset: &Asset) -> bool {
+        self.files.contains_key(&asset.path)
     }
 
     /// What has not come yet.

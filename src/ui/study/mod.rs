@@ -21,6 +21,7 @@ use crate::study::questionnaire::TlxScale;
 use crate::study::{Answer, AnswerValue, Condition, Feedback, Item, PairChoice, Questionnaire, Tool};
 
 pub use finish::{FinishView, Sending};
+pub use practice::FEEDBACK_PICTURES;
 pub use rehearsal::Rehearsal;
 pub use replay::ReplayView;
 pub use text::Pictures;
@@ -34,9 +35,10 @@ pub enum StudyScreen<'a> {
         done: usize,
         all: usize,
     },
-    /// It cannot go on; a sentence that says why.
+    /// It cannot go on: a sentence that says why, and what the researcher needs to know.
     Problem {
         text: &'a str,
+        details: &'a str,
         can_retry: bool,
     },
     /// The link names no participant.

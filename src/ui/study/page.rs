@@ -54,7 +54,9 @@ fn more_below(ui: &mut Ui, shown: &ScrollAreaOutput<()>) -> bool {
 fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut Vec<StudyRequest>) {
     match view.screen {
         StudyScreen::Loading { done, all } => loading(ui, done, all),
-        StudyScreen::Problem { text, can_retry } => problem(ui, view, text, can_retry, requests),
+        StudyScreen::Problem { text, details, can_retry } => {
+            problem(ui, view, text, details, can_retry, requests);
+        }
         StudyScreen::AskId => ask_id(ui, state, requests),
         StudyScreen::Consent { text } => consent(ui, view, text, state, requests),
         StudyScreen::Declined => {
@@ -75,7 +77,7 @@ fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut V
         }
         StudyScreen::Questions { items } => questions::draw(ui, "Before we start", items, state, requests),
         StudyScreen::Feedback { feedback, may_try_again } => {
-            practice::draw(ui, feedback, may_try_again, requests);
+            practice::draw(ui, view.pictures, feedback, may_try_again, requests);
         }
         StudyScreen::Begin { condition, number, count, trials } => {
             let title = if count > 1 {
@@ -147,14 +149,33 @@ fn loading(ui: &mut Ui, done: usize, all: usize) {
     }
 }
 
-fn problem(ui: &mut Ui, view: &StudyView<'_>, text: &str, can_retry: bool, requests: &mut Vec<StudyRequest>) {
+fn problem(
+    ui: &mut Ui,
+    view: &StudyView<'_>,
+    text: &str,
+    details: &str,
+    can_retry: bool,
+    requests: &mut Vec<StudyRequest>,
+) {
     heading(ui, "The study cannot go on here");
     ui.label(text);
-    if !view.contact.is_empty() {
-        ui.label(format!("If this does not help, please write to {}.", view.contact));
-    }
+    let whom = match view.contact {
+        "" => "whoever invited you",
+        contact => contact,
+    };
+    ui.label(format!("If this does not help, please write to {whom}."));
     if can_retry && primary(ui, "Try again") {
         requests.push(StudyRequest::Retry);
+    }
+    if !details.is_empty() {
+        ui.add_space(16.0);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("For the researcher:").small().weak());
+            if ui.small_button("Copy").clicked() {
+                ui.ctx().copy_text(details.to_owned());
+            }
+        });
+        ui.label(RichText::new(details).small().weak());
     }
 }
 

@@ -1,9 +1,9 @@
 //! What a researcher sees above a preview: that it is one, the way back, and a rehearsal with simulated participants.
 
-use egui::{Align, Button, DragValue, Id, Layout, Modal, RichText, Ui, Vec2};
+use egui::{Align, Button, DragValue, Layout, RichText, Ui, Vec2};
 
 use super::{State, StudyRequest, StudyView};
-use crate::ui::theme;
+use crate::ui::{once, theme};
 
 /// Participants that are a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub fn bar(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut 
 fn dialog(ui: &mut Ui, state: &mut State, requests: &mut Vec<StudyRequest>) {
     let Some(rehearsal) = &mut state.rehearsal else { return };
     let frame = theme::dialog_frame(ui.ctx());
-    let modal = Modal::new(Id::unique("rehearsal")).frame(frame).show(ui.ctx(), |ui| {
+    let modal = once::modal(ui.ctx(), "rehearsal", frame, |ui| {
         ui.set_width(460.0);
         ui.heading("Simulated participants");
         ui.add_space(6.0);

@@ -7,9 +7,9 @@ mod texts;
 
 use std::sync::Arc;
 
-use egui::{Button, Context, Id, Modal, RichText, ScrollArea, Ui, Vec2};
+use egui::{Button, Context, RichText, ScrollArea, Ui, Vec2};
 
-use super::{Asked, theme};
+use super::{Asked, once, theme};
 use crate::platform::{self, ExportFolder};
 use crate::session::Session;
 use crate::study::check::Finding;
@@ -152,7 +152,7 @@ pub fn draw(
     }
     let mut draft = draft_of(session, state.draft.take());
     let before = draft.study.clone();
-    let modal = Modal::new(Id::unique("study builder")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| {
+    let modal = once::modal(ctx, "study builder", theme::dialog_frame(ctx), |ui| {
         let room = ui.ctx().content_rect().size() - Vec2::splat(64.0);
         ui.set_min_size(SIZE.min(room));
         ui.set_max_size(SIZE.min(room));
