@@ -125,7 +125,7 @@ fn collecting(ui: &mut Ui, overview: &Overview, problem: Option<&str>, options: 
     let hint = "Drop the files here, all at once or one after the other. They stay on this computer.";
     ui.label(RichText::new(hint).weak());
     ui.add_space(4.0);
-    Grid::new("report parts").num_columns(3).spacing([12.0, 8.0]).show(ui, |ui| {
+    Grid::new("report parts").num_columns(3).min_col_width(16.0).spacing([12.0, 8.0]).show(ui, |ui| {
         part(ui, "Results", &overview.results);
         part(ui, "True poses", &overview.truth);
         part(ui, "Study", &overview.study);

@@ -142,12 +142,10 @@ impl Participating {
             Arrived::File(asset, Ok(bytes)) => {
                 let Some(ready) = self.ready_mut() else { return };
                 if let Err(error) = ready.files.add(&asset, bytes.into()) {
-                    self.take_missing(Trouble::reading(&asset.path, &error), now_ms);
+                    self.fail(Trouble::reading(&asset.path, &error));
                 }
             }
-            Arrived::File(asset, Err(error)) => {
-                self.take_missing(Trouble::fetching(&asset.path, &error), now_ms);
-            }
+            Arrived::File(asset, Err(error)) => self.take_missing(&asset, &error, now_ms),
             Arrived::Zip(Err(error)) | Arrived::Json(Err(error)) => {
                 self.fail(Trouble::fetching(&address, &error));
             }
@@ -166,15 +164,16 @@ impl Participating {
         }
     }
 
-    /// A file did not come. Who has something to do meanwhile is not told: it is asked for again.
-    fn take_missing(&mut self, trouble: Trouble, now_ms: f64) {
+    /// A file did not come. Who has something to do meanwhile is not told of a network that is gone for a moment.
+    fn take_missing(&mut self, asset: &Asset, error: &FetchError, now_ms: f64) {
         let is_waited_for = match &self.state {
             State::Running(running) => running.waits,
             _ => true,
         };
-        match is_waited_for || !trouble.can_retry {
-            true => self.fail(trouble),
-            false => self.refetch_at_ms = Some(now_ms + REFETCH_MS),
+        let may_pass = matches!(error, FetchError::Unreachable(_) | FetchError::Status(500..));
+        match may_pass && !is_waited_for {
+            true => self.refetch_at_ms = Some(now_ms + REFETCH_MS),
+            false => self.fail(Trouble::fetching(&asset.path, error)),
         }
     }
 

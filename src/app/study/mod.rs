@@ -326,7 +326,11 @@ impl Participating {
     /// Begins, or goes on where an earlier visit ended.
     fn run(&mut self, kept: Option<Participation>) {
         let state = std::mem::replace(&mut self.state, State::Loading(None));
-        let State::LookingBack { ready, participant, .. } = state else { return };
+        let State::LookingBack { ready, participant, .. } = state else {
+            // A file that cannot be had was noticed meanwhile: that stays on screen.
+            self.state = state;
+            return;
+        };
         let now_ms = platform::now_ms();
         let is_same = |kept: &Participation| kept.results.study.sha256 == ready.files.sha256;
         let reopened = kept.filter(is_same).map(|kept| kept.reopen(ready.files.study.resume, now_ms));
