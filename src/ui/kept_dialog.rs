@@ -6,6 +6,8 @@ use super::scenes_dialog::words;
 use super::{once, theme};
 use crate::platform::{SceneId, SceneSummary};
 
+const TITLE_WIDTH: f32 = 210.0;
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KeptRequest {
     Download(SceneId),
@@ -88,10 +90,10 @@ fn row(
     ui.push_id(&kept.id, |ui| {
         ui.horizontal(|ui| {
             ui.set_min_height(30.0);
-            ui.add_sized(
-                Vec2::new(210.0, 20.0),
-                egui::Label::new(kept.heading.title()).truncate().halign(Align::Min),
-            );
+            ui.allocate_ui(Vec2::new(TITLE_WIDTH, 20.0), |ui| {
+                ui.set_width(TITLE_WIDTH);
+                ui.add(egui::Label::new(kept.heading.title()).truncate());
+            });
             ui.label(RichText::new(words::when_text(kept.heading.changed_at_ms, now_ms)).weak());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if removing.as_ref() == Some(&kept.id) {

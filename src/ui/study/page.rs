@@ -114,7 +114,8 @@ pub fn heading(ui: &mut Ui, text: &str) {
 /// The button at the foot of a screen.
 pub fn primary(ui: &mut Ui, text: &str) -> bool {
     ui.add_space(12.0);
-    ui.add(theme::primary_button(text).min_size(BUTTON)).clicked()
+    // In a row its words are in its middle.
+    ui.horizontal(|ui| ui.add(theme::primary_button(text).min_size(BUTTON)).clicked()).inner
 }
 
 fn go_on(ui: &mut Ui, text: &str, requests: &mut Vec<StudyRequest>) {

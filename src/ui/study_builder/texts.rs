@@ -8,6 +8,7 @@ use crate::ui::Asked;
 pub fn draw(ui: &mut Ui, draft: &mut Draft, asked: &mut Asked) {
     let hint = "Markdown: # headings, **bold**, *italic*, - lists, [links](https://…), ![pictures](name.png)";
     ui.label(RichText::new(hint).weak());
+    pictures(ui, draft, asked);
     let texts = &mut draft.study.texts;
     for (title, text, hint) in [
         ("Consent", &mut texts.consent, "Asked to be agreed to; empty: nothing is asked"),
@@ -19,12 +20,10 @@ pub fn draw(ui: &mut Ui, draft: &mut Draft, asked: &mut Asked) {
         let field = ui.add(edit);
         field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, title));
     }
-    pictures(ui, draft, asked);
 }
 
 /// Pictures are shown where a text names them.
 fn pictures(ui: &mut Ui, draft: &mut Draft, asked: &mut Asked) {
-    ui.label(RichText::new("Pictures").strong());
     let mut removed = None;
     for (index, (name, bytes)) in draft.pictures.iter().enumerate() {
         ui.horizontal(|ui| {
