@@ -56,21 +56,14 @@ impl Bvh {
     /// Builds the tree in O(n log n).
     pub fn build(mesh: &Mesh) -> Self {
         let places = sorted_places(mesh);
-        let mut nodes = vec![leaf(0, places.len())];
+        // Leaves are half full or so.
+        let mut nodes = Vec::with_capacity(places.len());
+        nodes.push(leaf(0, places.len()));
         let mut pending = vec![0_usize];
         while let Some(node) = pending.pop() {
-            let Node { first, triangle_count, .. } = nodes[node];
-            let (start, end) = (first as usize, (first + triangle_count) as usize);
-            if end - start <= LARGEST_LEAF {
-                continue;
+            if let Some(first_child) = part(&mut nodes, node, &places) {
+                pending.extend([first_child, first_child + 1]);
             }
-            let middle = start + split(&places[start..end]);
-            let first_child = nodes.len();
-            nodes.push(leaf(start, middle));
-            nodes.push(leaf(middle, end));
-            nodes[node].first = first_child as u32;
-            nodes[node].triangle_count = 0;
-            pending.extend([first_child, first_child + 1]);
         }
         let mut tree = Self { nodes, triangles: places.into_iter().map(|place| place.triangle).collect() };
         tree.fit(mesh);
@@ -80,21 +73,28 @@ impl Bvh {
     /// Draws the boxes around what is in them. Children come after their parents, so backwards every child is done first.
     fn fit(&mut self, mesh: &Mesh) {
         for number in (0..self.nodes.len()).rev() {
-            let node = self.nodes[number];
-            let (first, count) = (node.first as usize, node.triangle_count as usize);
-            let mut around = Box3::EMPTY;
-            if count == 0 {
-                self.nodes[first..first + 2].iter().for_each(|child| around.grow(child.min, child.max));
-            } else {
-                for &triangle in &self.triangles[first..first + count] {
-                    for vertex in mesh.triangles()[triangle as usize] {
-                        let position = mesh.positions_mm()[vertex as usize];
-                        around.grow(position, position);
-                    }
-                }
-            }
+            let around = self.around(number, mesh);
             (self.nodes[number].min, self.nodes[number].max) = (around.min, around.max);
         }
+    }
+
+    /// The box around what is in a node whose children have theirs. A call of its own, as [`part`] is.
+    #[inline(never)]
+    fn around(&self, number: usize, mesh: &Mesh) -> Box3 {
+        let node = self.nodes[number];
+        let (first, count) = (node.first as usize, node.triangle_count as usize);
+        let mut around = Box3::EMPTY;
+        if count == 0 {
+            self.nodes[first..first + 2].iter().for_each(|child| around.grow(child.min, child.max));
+            return around;
+        }
+        for &triangle in &self.triangles[first..first + count] {
+            for vertex in mesh.triangles()[triangle as usize] {
+                let position = mesh.positions_mm()[vertex as usize];
+                around.grow(position, position);
+            }
+        }
+        around
     }
 
     /// The tree as bytes, to hand it from the worker that built it to the page: nodes, and the order of triangles.
@@ -214,6 +214,24 @@ impl Bvh {
 /// Without a box as yet.
 fn leaf(start: usize, end: usize) -> Node {
     Node { min: Vec3::ZERO, first: start as u32, max: Vec3::ZERO, triangle_count: (end - start) as u32 }
+}
+
+/// Gives a node that is too large for a leaf two children, still as leaves; the number of the first.
+///
+/// A call of its own, for a browser replaces hastily compiled WebAssembly by proper code from one call to the next only.
+#[inline(never)]
+fn part(nodes: &mut Vec<Node>, node: usize, places: &[Place]) -> Option<usize> {
+    let Node { first, triangle_count, .. } = nodes[node];
+    let (start, end) = (first as usize, (first + triangle_count) as usize);
+    if end - start <= LARGEST_LEAF {
+        return None;
+    }
+    let middle = start + split(&places[start..end]);
+    let first_child = nodes.len();
+    nodes.push(leaf(start, middle));
+    nodes.push(leaf(middle, end));
+    (nodes[node].first, nodes[node].triangle_count) = (first_child as u32, 0);
+    Some(first_child)
 }
 
 /// A triangle, and where its centre is on the curve.

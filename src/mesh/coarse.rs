@@ -4,9 +4,8 @@
 //! vertices within a cell of a grid become one, at their mean; triangles that collapse are gone. It is linear in time,
 //! takes every mesh however broken, and moves no point farther than across a cell.
 
-use std::collections::HashMap;
-
 use glam::{DVec3, IVec3};
+use rustc_hash::FxHashMap;
 
 use super::{Mesh, MeshData, Paint};
 
@@ -52,28 +51,33 @@ struct Clusters {
 impl Clusters {
     fn new(mesh: &Mesh, cell_mm: f64) -> Self {
         let origin = mesh.bounds().min;
-        let mut number_of_cell: HashMap<IVec3, u32> = HashMap::new();
+        // The cells are our own grid's: nobody chose them to collide.
+        let mut number_of_cell: FxHashMap<IVec3, u32> = FxHashMap::default();
         let mut clusters = Self {
             cluster_of_vertex: Vec::with_capacity(mesh.positions_mm().len()),
             sums: Vec::new(),
             counts: Vec::new(),
             first_vertices: Vec::new(),
         };
-        for (vertex, position) in mesh.positions_mm().iter().enumerate() {
+        for position in mesh.positions_mm() {
             let position = position.as_dvec3();
             let cell = ((position - origin) / cell_mm).floor().as_ivec3();
             let next = clusters.sums.len() as u32;
-            let cluster = *number_of_cell.entry(cell).or_insert(next);
-            if cluster == next {
-                clusters.sums.push(DVec3::ZERO);
-                clusters.counts.push(0);
-                clusters.first_vertices.push(vertex as u32);
-            }
-            clusters.sums[cluster as usize] += position;
-            clusters.counts[cluster as usize] += 1;
-            clusters.cluster_of_vertex.push(cluster);
+            clusters.add(position, *number_of_cell.entry(cell).or_insert(next));
         }
         clusters
+    }
+
+    /// Adds the next vertex to a cluster, which may be the next one.
+    fn add(&mut self, position: DVec3, cluster: u32) {
+        if cluster as usize == self.sums.len() {
+            self.sums.push(DVec3::ZERO);
+            self.counts.push(0);
+            self.first_vertices.push(self.cluster_of_vertex.len() as u32);
+        }
+        self.sums[cluster as usize] += position;
+        self.counts[cluster as usize] += 1;
+        self.cluster_of_vertex.push(cluster);
     }
 
     /// The triangles that do not collapse, with their paint. Normals are computed anew from the coarser faces.

@@ -89,14 +89,7 @@ fn with_computed_normals(mesh: &Mesh) -> ShadingMesh {
     );
     let mut fan = Fan::default();
     for place in 0..place_count {
-        fan.gather(mesh, &face_normals, fans.corners_at(place));
-        if let Some(vertex) = fan.only_vertex() {
-            fan.emit_as_one(mesh, vertex, &mut shading);
-        } else {
-            fan.gather_edges(mesh, &place_of_vertex);
-            fan.join_across_smooth_edges();
-            fan.emit(mesh, &mut shading);
-        }
+        fan.shade(mesh, &face_normals, &place_of_vertex, fans.corners_at(place), &mut shading);
     }
     shading
 }
@@ -165,6 +158,28 @@ struct Fan {
 }
 
 impl Fan {
+    /// The vertices of one place.
+    ///
+    /// A call of its own, for a browser replaces hastily compiled WebAssembly by proper code from one call to the next only.
+    #[inline(never)]
+    fn shade(
+        &mut self,
+        mesh: &Mesh,
+        face_normals: &[Vec3],
+        place_of_vertex: &[u32],
+        corners: &[u32],
+        shading: &mut ShadingMesh,
+    ) {
+        self.gather(mesh, face_normals, corners);
+        if let Some(vertex) = self.only_vertex() {
+            self.emit_as_one(mesh, vertex, shading);
+        } else {
+            self.gather_edges(mesh, place_of_vertex);
+            self.join_across_smooth_edges();
+            self.emit(mesh, shading);
+        }
+    }
+
     fn gather(&mut self, mesh: &Mesh, face_normals: &[Vec3], corners: &[u32]) {
         self.corners.clear();
         for &corner in corners {

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 
 use egui::{Align, Button, Context, Layout, ProgressBar, RichText, ScrollArea, Ui, Vec2};
 
+use super::busy_mark::busy_mark;
 use super::{dialogs, once, theme};
 use crate::formats::PosesAs;
 use crate::formats::dataset::{Dataset, Recognised};
@@ -95,7 +96,7 @@ fn contents(ui: &mut Ui, view: &DatasetView<'_>) {
             ui.add_space(8.0);
             ui.horizontal(|ui| {
                 if !view.chosen.is_empty() {
-                    ui.spinner();
+                    busy_mark(ui);
                 }
                 let what = if view.chosen.is_empty() { "Choose a part." } else { "Reading what is in it…" };
                 ui.label(RichText::new(what).weak());

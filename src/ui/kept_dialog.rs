@@ -2,6 +2,7 @@
 
 use egui::{Align, Button, Context, Layout, RichText, ScrollArea, Ui, Vec2};
 
+use super::busy_mark::busy_mark;
 use super::scenes_dialog::words;
 use super::{once, theme};
 use crate::platform::{SceneId, SceneSummary};
@@ -61,7 +62,7 @@ pub fn draw(ctx: &Context, view: Option<&KeptView<'_>>, state: &mut State, asked
         ui.add_space(8.0);
         match view.list {
             None => {
-                ui.spinner();
+                busy_mark(ui);
             }
             Some([]) => {
                 ui.label("Nobody has taken part in a study in this browser.");

@@ -1,5 +1,6 @@
 //! The interface: panels, viewport, dialogs. Reads a [`Session`] and returns commands; changes nothing itself.
 
+mod busy_mark;
 mod command_button;
 mod dataset_dialog;
 mod dialogs;

@@ -4,6 +4,7 @@ mod tables;
 
 use egui::{Align, Button, Context, DragValue, Grid, Layout, ProgressBar, RichText, ScrollArea, Ui, Vec2};
 
+use super::busy_mark::busy_mark;
 use super::icons::{Icon, draw as draw_icon};
 use super::{once, theme};
 use crate::study::report::{Overview, Part, Report, ReportOptions};
@@ -116,7 +117,7 @@ fn working(ui: &mut Ui, text: &str, part: Option<f64>) {
         ui.label(text);
         match part {
             Some(part) => ui.add(ProgressBar::new(part as f32).desired_height(8.0)),
-            None => ui.spinner(),
+            None => busy_mark(ui),
         };
     });
 }

@@ -2,6 +2,7 @@
 
 use egui::{Align, Button, Key, Layout, MenuBar, RichText, TextEdit, Ui, Vec2};
 
+use super::busy_mark::busy_mark;
 use super::command_button::{command_button, tooltip};
 use super::icons::{Icon, icon_button};
 use super::{Asked, Preferences, Saving, SceneRequest, Surroundings, theme};
@@ -140,7 +141,7 @@ fn status(ui: &mut Ui, session: &Session, around: &Surroundings<'_>, asked: &mut
             asked.cancel_loading = true;
         }
         ui.add(egui::Label::new(RichText::new(&busy.text).weak()).truncate());
-        ui.spinner();
+        busy_mark(ui);
         return;
     }
     if session.scene().is_empty() {

@@ -2,6 +2,7 @@
 
 use egui::{Align2, Area, CornerRadius, Id, Order, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
 
+use super::busy_mark::busy_mark;
 use super::scenes_dialog::words;
 use super::{Asked, SceneRequest, Surroundings, theme};
 use crate::session::{Command, CommandId};
@@ -42,7 +43,7 @@ fn opening(ui: &mut Ui, rect: egui::Rect) {
     let place = egui::Rect::from_center_size(rect.center(), Vec2::new(120.0, 24.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
         ui.horizontal(|ui| {
-            ui.spinner();
+            busy_mark(ui);
             ui.label(RichText::new("Opening…").weak());
         });
     });
@@ -83,7 +84,7 @@ fn card(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             ui.add_space(ui.available_width() / 2.0 - 60.0);
-            ui.spinner();
+            busy_mark(ui);
             ui.label(&busy.text);
             if busy.can_cancel && ui.small_button("Cancel").clicked() {
                 asked.cancel_loading = true;

@@ -4,6 +4,7 @@ use egui::{Button, RichText, Ui, Vec2};
 
 use super::page::heading;
 use super::{StudyRequest, StudyView, text};
+use crate::ui::busy_mark::busy_mark;
 use crate::ui::theme;
 
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +43,7 @@ pub fn draw(ui: &mut Ui, view: &StudyView<'_>, finish: &FinishView<'_>, requests
         Sending::UnderWay { attempt, of } => {
             heading(ui, "Saving your results");
             ui.horizontal(|ui| {
-                ui.spinner();
+                busy_mark(ui);
                 ui.label(if attempt > 1 {
                     format!("The server did not answer. Try {attempt} of {of}…")
                 } else {

@@ -5,6 +5,7 @@ use egui::{Align, Button, Layout, RichText, Ui, Vec2};
 use super::{State, StudyRequest, StudyView, allowed_keys, has};
 use crate::session::{Command, CommandId, Session, Tool as SessionTool};
 use crate::study::Tool;
+use crate::ui::busy_mark::busy_mark;
 use crate::ui::command_button::{command_button, tooltip};
 use crate::ui::icons::{Icon, icon_button};
 use crate::ui::{Asked, theme};
@@ -68,7 +69,7 @@ pub fn bar(
             }
             if let Some(busy) = trial.busy {
                 ui.label(RichText::new(busy).weak());
-                ui.spinner();
+                busy_mark(ui);
             } else if trial.suggests_pause && ui.ctx().content_rect().width() >= WIDE {
                 ui.label(RichText::new("Time for a short break?").weak());
             }
