@@ -23,8 +23,8 @@ fn from_json(value: &Value) -> Result<JsValue, JsValue> {
 }
 
 fn state_json(state: &PageState) -> Result<Value, JsValue> {
-    let mut value: Value =
-        serde_json::from_str(&state.document_json).map_err(|error| js_sys::Error::new(&error.to_string()))?;
+    let mut value: Value = serde_json::from_slice(state.document_json.as_bytes())
+        .map_err(|error| js_sys::Error::new(&error.to_string()))?;
     value["selection"] = json!({"photo": state.photo, "object": state.selected, "tool": state.tool});
     value["viewport"] =
         json!({"zoom": state.zoom, "center": state.center, "rect": state.viewport, "panels": state.panels});

@@ -194,7 +194,8 @@ impl PinPose {
                 || self.loading.is_finishing_mesh()
                 || self.datasets.is_busy()
                 || self.scenes.is_switching()
-                || self.snapping.is_busy(),
+                || self.snapping.is_busy()
+                || self.reporting.is_busy(),
             saved: self.autosave.state(&self.session) == Saving::Saved,
             question: question.or_else(|| self.datasets.asks().then_some("data_set")),
             notices: self.ui_state.toasts.texts().map(str::to_owned).collect(),

@@ -22,7 +22,8 @@ impl PinPose {
         let state = &self.ui_state;
         let dialog_is_open =
             self.session.question().is_some() || state.open.is_some() || state.scenes_dialog.is_open();
-        let dialog_is_open = dialog_is_open || state.study_builder.is_open();
+        let dialog_is_open = dialog_is_open || state.study_builder.is_open() || state.report_dialog.is_open();
+        let dialog_is_open = dialog_is_open || state.kept_dialog.is_open();
         let dialog_is_open = dialog_is_open || self.datasets.is_dialog_open();
         if dialog_is_open || ctx.text_edit_focused() || egui::Popup::is_any_open(ctx) {
             return;

@@ -13,12 +13,14 @@ mod events;
 mod exporting;
 mod input;
 mod jobs;
+mod kept;
 mod loading;
 mod mask_layer;
 mod motion;
 mod performance;
 mod photo_cache;
 mod pictures;
+mod reporting;
 mod scenes;
 mod snapping;
 mod start;
@@ -62,6 +64,8 @@ pub struct PinPose {
     symmetries: symmetry::SymmetrySearch,
     motion: Option<motion::Motion>,
     building: building::Building,
+    reporting: reporting::Reporting,
+    kept: kept::Kept,
     ctx: egui::Context,
     performance: performance::Performance,
     /// While the key that hides the overlay is down: what was shown before.
@@ -115,6 +119,8 @@ impl PinPose {
             symmetries: symmetry::SymmetrySearch::default(),
             motion: None,
             building: building::Building::default(),
+            reporting: reporting::Reporting::default(),
+            kept: kept::Kept::default(),
             ctx: ctx.clone(),
             performance: performance::Performance::default(),
             layers_before_hold: None,
@@ -163,6 +169,7 @@ impl eframe::App for PinPose {
         }
         self.tick_scenes();
         self.take_loaded();
+        self.take_dropped_results(ctx);
         self.take_dropped(ctx);
         self.tick_datasets();
         self.answer_calls(ctx);
@@ -177,6 +184,8 @@ impl eframe::App for PinPose {
         self.tick_symmetries();
         self.tick_motion();
         self.tick_building();
+        self.tick_reporting();
+        self.tick_kept();
         self.autosave.tick(ctx, &self.session, platform::now_ms());
         self.send_events();
     }
@@ -211,6 +220,8 @@ impl eframe::App for PinPose {
                 now_ms: platform::now_ms(),
             },
             builder: Some(self.building.view()),
+            report: Some(self.reporting.view()),
+            kept: Some(self.kept.view()),
             update_ready: platform::update_offer().is_some(),
             dataset: self.datasets.view(),
             files_hover: ui.ctx().input(|input| !input.raw.hovered_files.is_empty()),
@@ -232,8 +243,17 @@ impl eframe::App for PinPose {
         if let Some(request) = asked.export {
             self.start_export(request);
         }
+        if asked.study_pictures {
+            self.pick_study_pictures();
+        }
         if let Some(build) = asked.study_build {
             self.start_building(build);
+        }
+        if let Some(request) = asked.kept {
+            self.take_kept_request(request);
+        }
+        if let Some(request) = asked.report {
+            self.take_report_request(request);
         }
         self.place_views();
         if let Some(moved) = asked.scene_move {

@@ -22,10 +22,11 @@ pub use memory::MemoryStorage;
 pub use native::{
     Background, ExportFolder, FolderStorage, GrowingDownload, browser_facts, default_storage, download,
     fetch, fetch_example, go_to, memory_bytes, navigation_ms, new_scene_id, now_ms, open_folder,
-    page_parameter, page_version, pick_files, pick_folder, png_of_foreign, reload, report_crash, send_event,
-    send_request, spawn, update_offer, wasm_bytes, watch_dropped_folders, watch_hidden, when_left,
+    page_parameter, page_version, pick_files, pick_folder, png_of_foreign, png_of_svg, reload, report_crash,
+    send_event, send_request, show_page, spawn, update_offer, wasm_bytes, watch_dropped_folders,
+    watch_hidden, when_left,
 };
-pub use network::{BrowserFacts, NetworkFuture, Request};
+pub use network::{BrowserFacts, FetchError, FetchFuture, NetworkFuture, Request};
 pub use page_api::{
     Loaded, PageAnswer, PageCall, PageCalls, PageReply, PageState, PageValue, Perf, Picked, Widget,
 };
@@ -39,9 +40,9 @@ pub use time_zone::utc_offset_minutes;
 pub use web::{
     Background, ExportFolder, GrowingDownload, browser_facts, default_storage, download, fetch,
     fetch_example, go_to, install_panic_hook, memory_bytes, navigation_ms, new_scene_id, now_ms,
-    page_parameter, page_version, pick_files, pick_folder, png_of_foreign, reload, report_crash, send_event,
-    send_request, spawn, update_offer, wasm_bytes, watch_dropped_folders, watch_for_updates, watch_hidden,
-    when_left,
+    page_parameter, page_version, pick_files, pick_folder, png_of_foreign, png_of_svg, reload, report_crash,
+    send_event, send_request, show_page, spawn, update_offer, wasm_bytes, watch_dropped_folders,
+    watch_for_updates, watch_hidden, when_left,
 };
 
 /// A file that the user picked or dropped.

@@ -33,8 +33,14 @@ pub enum Effect {
     AskForPose,
     AskForExport,
     BuildStudy,
+    /// A study that was exported, to be changed.
+    PickStudy,
     /// The example study, as its participants see it.
     ShowExampleStudy,
+    /// Results that are kept here.
+    ShowKeptResults,
+    /// A report of results, from their files.
+    ShowStudyReport,
     /// A study and a participant's results, to be watched.
     PickResults,
     NewScene,

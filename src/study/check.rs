@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::markdown::{Block, blocks};
 use super::pack::{Draft, Pack, Role};
 use super::{Assignment, SampleSets, Saving, Schedule, StartPose, Study, StudyError};
 use crate::scene::Scene;
@@ -24,6 +25,9 @@ impl Finding {
     }
 }
 
+/// A file of a study may be so large: the largest photos and meshes that the program takes are smaller.
+const MOST_ASSET_BYTES: u64 = 512 << 20;
+
 /// More than this takes a minute over a slow line.
 const LARGE_BYTES: u64 = 50 << 20;
 
@@ -44,6 +48,7 @@ pub fn check(draft: &Draft, scene: &Scene, pack: Result<&Pack, &StudyError>) -> 
         }
     }
     settings(&draft.study, &mut findings);
+    pictures(draft, &mut findings);
     truths(draft, scene, &mut findings);
     findings.sort_by_key(|finding| !finding.is_error);
     findings.dedup();
@@ -69,6 +74,27 @@ fn settings(study: &Study, findings: &mut Vec<Finding>) {
     }
     if study.questionnaires.is_empty() {
         findings.push(Finding::hint("There is no questionnaire"));
+    }
+}
+
+/// Pictures that a text names, and that are there.
+fn pictures(draft: &Draft, findings: &mut Vec<Finding>) {
+    let texts = &draft.study.texts;
+    let of_conditions = draft.study.conditions.iter().map(|condition| &condition.instructions);
+    let all = [&texts.consent, &texts.instructions, &texts.thanks].into_iter().chain(of_conditions);
+    let shown: BTreeSet<String> = all
+        .flat_map(|text| blocks(text))
+        .filter_map(|block| match block {
+            Block::Picture { name, .. } => Some(name),
+            _ => None,
+        })
+        .collect();
+    let added: BTreeSet<&String> = draft.pictures.iter().map(|(name, _)| name).collect();
+    for name in shown.iter().filter(|name| !added.contains(name)) {
+        findings.push(Finding::error(format!("A text shows {name}, which is not among the pictures")));
+    }
+    for name in added.into_iter().filter(|name| !shown.contains(*name)) {
+        findings.push(Finding::hint(format!("The picture {name} is loaded, and no text shows it")));
     }
 }
 
@@ -125,6 +151,10 @@ pub fn usable(study: &Study) -> Result<(), StudyError> {
         let leads_out = asset.path.split(['/', '\\']).any(|part| part == ".." || part.is_empty());
         if leads_out || asset.path.contains(':') {
             return Err(StudyError::at(asset.path.clone(), "a path beside study.json expected"));
+        }
+        if asset.bytes > MOST_ASSET_BYTES {
+            let (path, bytes) = (asset.path.clone(), asset.bytes);
+            return Err(StudyError::TooLarge { path, bytes, most: MOST_ASSET_BYTES });
         }
     }
     protocol(study)

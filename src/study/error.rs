@@ -14,6 +14,10 @@ pub enum StudyError {
     Format { expected: &'static str, found: String },
     #[error("of version {found}; this page reads up to version {supported}: reload the page to update it")]
     Version { found: u64, supported: u64 },
+    #[error("{0}: the file has another content than the study says: it was changed or cut short")]
+    Changed(String),
+    #[error("{path}: {bytes} bytes, where at most {most} are loaded")]
+    TooLarge { path: String, bytes: u64, most: u64 },
     #[error("{0}")]
     Pack(String),
 }
@@ -22,7 +26,10 @@ impl StudyError {
     pub fn json(error: &serde_json::Error) -> Self {
         let text = error.to_string();
         // serde_json repeats the position at the end of its message.
-        let reason = text.split(" at line ").next().unwrap_or(&text).to_owned();
+        let reason = match error.is_eof() {
+            true => "the file ends in the middle: it was cut short".to_owned(),
+            false => text.split(" at line ").next().unwrap_or(&text).to_owned(),
+        };
         Self::Json { line: error.line(), column: error.column(), reason }
     }
 

@@ -283,7 +283,7 @@ impl Participation {
 
     /// `None` for what is none, or of another version.
     pub fn from_json(text: &str) -> Option<Self> {
-        serde_json::from_str(text).ok()
+        serde_json::from_slice(text.as_bytes()).ok()
     }
 }
 

@@ -6,6 +6,7 @@
 mod chance;
 pub mod check;
 mod clock;
+pub mod comparison;
 mod error;
 mod events;
 mod flow;

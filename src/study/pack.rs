@@ -1,6 +1,7 @@
 //! From an open scene to the files of a study: `study.json` and its assets for participants, and the truth for the researcher alone.
 
 mod files;
+mod reopened;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,6 +18,7 @@ use crate::photo::without_metadata;
 use crate::scene::{AnnotationState, Object, ObjectId, Photo, PhotoId, Scene, Sha256};
 
 pub use files::{STUDY_NAME, StudyFiles};
+pub use reopened::reopened;
 
 /// What a photo with an object becomes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

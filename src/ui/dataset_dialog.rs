@@ -4,10 +4,10 @@ mod parts;
 
 use std::collections::BTreeSet;
 
-use egui::{Align, Button, Context, Id, Layout, Modal, ProgressBar, RichText, ScrollArea, Ui, Vec2};
+use egui::{Align, Button, Context, Layout, ProgressBar, RichText, ScrollArea, Ui, Vec2};
 
 use super::busy_mark::busy_mark;
-use super::{dialogs, theme};
+use super::{dialogs, once, theme};
 use crate::formats::PosesAs;
 use crate::formats::dataset::{Dataset, Recognised};
 
@@ -46,7 +46,7 @@ pub struct DatasetView<'a> {
 
 /// Draws the dialog, and says what the user wants.
 pub fn draw(ctx: &Context, view: &DatasetView<'_>, requests: &mut Vec<DatasetRequest>) {
-    let modal = Modal::new(Id::unique("data set")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| {
+    let modal = once::modal(ctx, "data set", theme::dialog_frame(ctx), |ui| {
         let screen = ui.ctx().content_rect();
         ui.set_width(WIDTH.min(screen.width() - 64.0));
         title(ui, view);

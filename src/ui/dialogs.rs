@@ -1,8 +1,8 @@
 //! What comes up over the rest: questions that an import raises, the sheet of keys, the field to paste a pose.
 
-use egui::{Button, Id, Key, Modal, Modifiers, RichText, Ui, Vec2};
+use egui::{Button, Key, Modifiers, RichText, Ui, Vec2};
 
-use super::{Asked, Dialog, UiState, export_dialog, palette, paste_dialog, shortcuts_sheet, theme};
+use super::{Asked, Dialog, UiState, export_dialog, once, palette, paste_dialog, shortcuts_sheet, theme};
 use crate::formats::{Incoming, PosesAs};
 use crate::session::{Answer, Command, Question, Session};
 
@@ -63,7 +63,7 @@ fn ask(
     commands: &mut Vec<Command>,
 ) {
     let frame = theme::dialog_frame(ctx);
-    let modal = Modal::new(Id::unique("question")).frame(frame).show(ctx, |ui| {
+    let modal = once::modal(ctx, "question", frame, |ui| {
         ui.set_width(430.0_f32.min(ui.ctx().content_rect().width() - 64.0));
         match question {
             Question::PosesAs(asked) => {

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Align, Button, Id, Layout, Modal, RichText, ScrollArea, Ui, Vec2};
+use egui::{Align, Button, Layout, RichText, ScrollArea, Ui, Vec2};
 
 use super::dialogs::BUTTON_SIZE;
-use super::theme;
+use super::{once, theme};
 use crate::formats::Keep;
 use crate::formats::export::{CameraAxes, ExportOptions, ExportPart, LengthUnit, PhotoChoice, PoseDirection};
 use crate::platform::ExportFolder;
@@ -50,7 +50,7 @@ pub fn draw(
     request: &mut Option<ExportRequest>,
 ) -> bool {
     let frame = theme::dialog_frame(ctx);
-    let modal = Modal::new(Id::unique("export")).frame(frame).show(ctx, |ui| {
+    let modal = once::modal(ctx, "export", frame, |ui| {
         ui.set_width(WIDTH.min(ui.ctx().content_rect().width() - 64.0));
         ui.heading("Export files");
         ui.add_space(8.0);

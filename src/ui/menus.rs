@@ -4,7 +4,7 @@ use egui::{Button, Ui};
 
 use super::command_button::command_item;
 use super::scenes_dialog::words;
-use super::{Asked, Preferences, SceneRequest, Surroundings, ThemeChoice};
+use super::{Asked, Preferences, SceneRequest, Surroundings, ThemeChoice, once};
 use crate::session::{CommandId, Session};
 
 /// What a menu has between two lines.
@@ -105,7 +105,11 @@ pub const MENUS: [MenuPlan; 6] = [
     },
     MenuPlan {
         title: "Study",
-        groups: &[&[CommandId::BuildStudy, CommandId::WatchTrial], &[CommandId::ExampleStudy]],
+        groups: &[
+            &[CommandId::BuildStudy, CommandId::ChangeStudy],
+            &[CommandId::StudyReport, CommandId::WatchTrial, CommandId::KeptResults],
+            &[CommandId::ExampleStudy],
+        ],
     },
     MenuPlan { title: "Help", groups: &[&[CommandId::TogglePalette, CommandId::ToggleShortcuts]] },
 ];
@@ -150,7 +154,7 @@ pub fn draw(
                 ui.separator();
             }
             if *group == NUDGES {
-                ui.menu_button("Nudge", |ui| {
+                once::menu(ui, "Nudge", |ui| {
                     ui.set_min_width(220.0);
                     items(ui, group, session, asked);
                 });
@@ -181,7 +185,7 @@ fn recent_scenes(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
             .on_disabled_hover_text("No other scene is kept in this browser");
         return;
     }
-    ui.menu_button("Recent scenes", |ui| {
+    once::menu(ui, "Recent scenes", |ui| {
         ui.set_min_width(260.0);
         for scene in others().take(MOST) {
             let when = words::when_text(scene.heading.changed_at_ms, around.store.now_ms);
@@ -195,7 +199,7 @@ fn recent_scenes(ui: &mut Ui, around: &Surroundings<'_>, asked: &mut Asked) {
 }
 
 fn themes(ui: &mut Ui, preferences: &mut Preferences) {
-    ui.menu_button("Theme", |ui| {
+    once::menu(ui, "Theme", |ui| {
         for (theme, title) in ThemeChoice::ALL {
             if ui.radio_value(&mut preferences.theme, theme, title).clicked() {
                 ui.close();

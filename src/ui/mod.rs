@@ -6,12 +6,15 @@ mod dataset_dialog;
 mod dialogs;
 mod export_dialog;
 mod icons;
+mod kept_dialog;
 mod keymap;
 mod menus;
+mod once;
 mod palette;
 mod panels;
 mod paste_dialog;
 mod preferences;
+mod report_dialog;
 mod scenes_dialog;
 mod shortcuts;
 mod shortcuts_sheet;
@@ -37,8 +40,10 @@ use crate::solve::symmetry::FoundSymmetries;
 
 pub use dataset_dialog::{DatasetRequest, DatasetView};
 pub use export_dialog::ExportRequest;
+pub use kept_dialog::{KeptRequest, KeptView};
 pub use keymap::{Binding, Keymap, Refusal};
 pub use preferences::{DragModifier, ModifierKey, ModifierMap, Preferences, ThemeChoice};
+pub use report_dialog::{ReportRequest, ReportStage, ReportView};
 pub use scenes_dialog::SceneRequest;
 pub use shortcuts::{Pressed, is_released, pressed_commands, shortcut_text};
 pub use study_builder::{BuilderView, StudyBuild};
@@ -70,6 +75,8 @@ pub struct UiState {
     pub scene_viewport: Option<ViewportPlace>,
     split: viewport::SplitState,
     pub study_builder: study_builder::State,
+    pub report_dialog: report_dialog::State,
+    pub kept_dialog: kept_dialog::State,
     /// Of the study that somebody takes part in.
     pub study: study::State,
 }
@@ -142,6 +149,10 @@ pub struct Surroundings<'a> {
     pub store: StoreView<'a>,
     /// What is known of the study that is being built.
     pub builder: Option<BuilderView<'a>>,
+    /// And of the report of one.
+    pub report: Option<ReportView<'a>>,
+    /// Results of studies that are kept in this browser.
+    pub kept: Option<KeptView<'a>>,
 }
 
 impl Surroundings<'_> {
@@ -204,6 +215,10 @@ pub struct Asked {
     pub export: Option<ExportRequest>,
     pub show_motion: Option<ShownMotion>,
     pub study_build: Option<StudyBuild>,
+    /// Pictures for a study's texts are to be picked.
+    pub study_pictures: bool,
+    pub report: Option<ReportRequest>,
+    pub kept: Option<KeptRequest>,
 }
 
 /// Draws a whole frame.
@@ -251,6 +266,8 @@ pub fn draw(ui: &mut egui::Ui, session: &Session, around: &Surroundings<'_>, sta
         dataset_dialog::draw(ui.ctx(), dataset, &mut asked.dataset_requests);
     }
     study_builder::draw(ui.ctx(), session, around.builder.as_ref(), &mut state.study_builder, &mut asked);
+    report_dialog::draw(ui.ctx(), around.report.as_ref(), &mut state.report_dialog, &mut asked.report);
+    kept_dialog::draw(ui.ctx(), around.kept.as_ref(), &mut state.kept_dialog, &mut asked.kept);
     scenes_dialog::draw(ui.ctx(), around, &mut state.scenes_dialog, &mut asked.scene_requests);
     match state.toasts.draw(ui.ctx()) {
         Some(Offer::Workspace) => asked.commands.push(Command::Run(CommandId::ExportWorkspace)),

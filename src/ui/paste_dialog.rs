@@ -1,9 +1,9 @@
 //! A field to paste a pose into, which says at once what it understood.
 
-use egui::{Align, Button, Id, Key, Layout, Modal, Modifiers, RichText, TextEdit, Ui};
+use egui::{Align, Button, Key, Layout, Modifiers, RichText, TextEdit, Ui};
 
 use super::dialogs::BUTTON_SIZE;
-use super::theme;
+use super::{once, theme};
 use crate::formats::read_pose_text;
 use crate::math::Pose;
 use crate::session::{Command, Session};
@@ -30,7 +30,7 @@ pub fn draw(ctx: &egui::Context, session: &Session, state: &mut State, commands:
     let name = session.scene().object(object).map_or("the object", |object| object.name.as_str());
     let present = &annotation.camera_from_object;
     let frame = theme::dialog_frame(ctx);
-    let modal = Modal::new(Id::unique("paste pose")).frame(frame).show(ctx, |ui| {
+    let modal = once::modal(ctx, "paste pose", frame, |ui| {
         ui.set_width(430.0_f32.min(ui.ctx().content_rect().width() - 64.0));
         ui.heading(format!("Pose of {name}"));
         ui.add_space(4.0);

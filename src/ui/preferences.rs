@@ -164,7 +164,7 @@ impl Preferences {
     }
 
     fn from_json(text: &str) -> Self {
-        let saved: Saved = serde_json::from_str(text).unwrap_or_default();
+        let saved: Saved = serde_json::from_slice(text.as_bytes()).unwrap_or_default();
         Self {
             theme: saved.theme,
             keymap: Keymap::from_saved(&saved.keys),

@@ -3,9 +3,9 @@
 mod row;
 pub mod words;
 
-use egui::{Align, Button, Context, Id, Key, Layout, Modal, RichText, TextEdit, Ui, Vec2};
+use egui::{Align, Button, Context, Id, Key, Layout, RichText, TextEdit, Ui, Vec2};
 
-use super::{Surroundings, theme};
+use super::{Surroundings, once, theme};
 use crate::platform::{SceneId, SceneSummary};
 
 /// What the user wants to be done with scenes.
@@ -79,12 +79,11 @@ pub fn draw(ctx: &Context, around: &Surroundings<'_>, state: &mut State, request
     }
     // Esc goes back one step.
     let has_step_back = state.renaming.is_some() || state.is_deleting;
-    let modal =
-        Modal::new(Id::unique("scenes")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| match &state.page {
-            Page::Name(_) => name_form(ui, state, requests),
-            Page::List => list(ui, around, state, requests),
-            Page::Closed => {}
-        });
+    let modal = once::modal(ctx, "scenes", theme::dialog_frame(ctx), |ui| match &state.page {
+        Page::Name(_) => name_form(ui, state, requests),
+        Page::List => list(ui, around, state, requests),
+        Page::Closed => {}
+    });
     if !modal.should_close() {
         return;
     }

@@ -1,10 +1,10 @@
 //! The sheet of gestures and keys, where every key can be changed.
 
-use egui::{Button, Context, Event, Grid, Id, Key, Modal, RichText, TextEdit, Ui};
+use egui::{Button, Context, Event, Grid, Key, RichText, TextEdit, Ui};
 
 use super::keymap::{Binding, Keymap, Refusal};
 use super::menus::{self, NUDGES};
-use super::{DragModifier, ModifierKey, ModifierMap, Preferences, theme};
+use super::{DragModifier, ModifierKey, ModifierMap, Preferences, once, theme};
 use crate::session::CommandId;
 
 const WIDTH: f32 = 640.0;
@@ -29,7 +29,7 @@ pub fn draw(ctx: &Context, preferences: &mut Preferences, state: &mut State) -> 
     let is_toggled = state.recording.is_none() && is_toggled(ctx, &preferences.keymap);
     let mut is_closed = false;
     let frame = theme::dialog_frame(ctx);
-    let modal = Modal::new(Id::unique("shortcuts")).frame(frame).show(ctx, |ui| {
+    let modal = once::modal(ctx, "shortcuts", frame, |ui| {
         ui.set_width(WIDTH.min(ui.ctx().content_rect().width() - 48.0));
         is_closed = header(ui, preferences, state);
         ui.separator();

@@ -5,8 +5,8 @@ use egui::{Align, Button, Key, Layout, MenuBar, RichText, TextEdit, Ui, Vec2};
 use super::busy_mark::busy_mark;
 use super::command_button::{command_button, tooltip};
 use super::icons::{Icon, icon_button};
-use super::menus;
 use super::{Asked, Preferences, Saving, SceneRequest, Surroundings, theme};
+use super::{menus, once};
 use crate::session::{Command, CommandId, Session, Tool};
 
 /// Below these widths of the window the scene's name and the tools' words make room.
@@ -38,7 +38,7 @@ pub fn draw(
             ui.add_space(4.0);
         }
         for plan in &menus::MENUS {
-            ui.menu_button(plan.title, |ui| menus::draw(ui, plan, session, around, preferences, asked));
+            once::menu(ui, plan.title, |ui| menus::draw(ui, plan, session, around, preferences, asked));
         }
         ui.separator();
         tools(ui, session, &mut asked.commands);

@@ -110,6 +110,10 @@ impl Linemod {
         Ok(Linemod { folder, camera, samples: samples.context("A frame without its one object")? })
     }
 
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     pub fn sample(&self, photo: &str) -> anyhow::Result<&Sample> {
         self.samples.iter().find(|sample| sample.photo == photo).with_context(|| format!("No sample {photo}"))
     }

@@ -6,6 +6,7 @@ mod cdp;
 mod context;
 mod data;
 mod flows;
+mod host;
 mod input;
 mod page;
 mod poses;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::latex::check_latex;
 use crate::report_study::{Recipe, write_study};
 use crate::support::{data_folder, empty_folder, numpy, pinpose};
 
@@ -125,6 +126,14 @@ fn the_papers_study_is_built_simulated_and_reported() {
         let bytes = std::fs::read(folder.join("report").join(file.as_str().unwrap())).unwrap();
         assert!(!bytes.is_empty(), "{file}");
     }
+    let mut checked = 0;
+    for file in found["files"].as_array().unwrap().iter().filter_map(Value::as_str) {
+        if file.ends_with(".tex") {
+            check_latex(file, &std::fs::read_to_string(folder.join("report").join(file)).unwrap());
+            checked += 1;
+        }
+    }
+    assert!(checked >= 8, "{checked} tables in LaTeX");
     let picture = std::fs::read(folder.join("report/figures/pictures.png")).unwrap();
     let picture = pinpose::photo::decode(&picture).unwrap().pixels;
     assert!(picture.width > 1000 && picture.height > 2000);
@@ -170,4 +179,49 @@ fn what_is_missing_is_said() {
     assert!(remarks.contains("3 trials are left out"), "{remarks}");
     std::fs::remove_file(folder.join("assets/lump.obj")).unwrap();
     fails(&["report", &results, "--truth", &truth, "--out", &out], "no trial can be scored", 1);
+}
+
+#[test]
+fn no_name_breaks_a_table_in_latex() {
+    let recipe = Recipe { sets: vec![("A", 3)], samples_per_set: 2, seconds: None };
+    let folder = write_study("report-names", &recipe);
+    for entry in std::fs::read_dir(folder.join("results")).unwrap() {
+        let path = entry.unwrap().path();
+        let mut results: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+        let name = results["participant"]["id"].as_str().unwrap().to_owned();
+        results["participant"]["id"] = format!("{name} 50% & #1_{{x}}^2 ~$\\\n\n<ü>").into();
+        results["items_before"] = serde_json::json!([
+            {"item": "expertise", "value": format!("a_b & 100 % \\ {{{name}")}
+        ]);
+        std::fs::write(&path, results.to_string()).unwrap();
+    }
+    let found = report(&folder, &["--no-png"]);
+    let files = found["files"].as_array().unwrap().iter().filter_map(Value::as_str);
+    for file in files.filter(|file| file.ends_with(".tex")) {
+        check_latex(file, &std::fs::read_to_string(folder.join("report").join(file)).unwrap());
+    }
+}
+
+#[test]
+fn who_comes_twice_is_named() {
+    let recipe = Recipe { sets: vec![("A", 2)], samples_per_set: 2, seconds: None };
+    let folder = write_study("report-twice", &recipe);
+    let second = folder.join("results/person01.json");
+    let mut results: Value = serde_json::from_slice(&std::fs::read(&second).unwrap()).unwrap();
+    results["participant"]["id"] = "person00".into();
+    results["started_at"] = "2027-01-01T00:00:00.000Z".into();
+    std::fs::write(&second, results.to_string()).unwrap();
+    let found = report(&folder, &["--no-png"]);
+    let remarks = found["remarks"].to_string();
+    assert!(remarks.contains("2 participations have the id person00"), "{remarks}");
+    assert_eq!(found["participants"], 2);
+    // A file that was cut short on its way is named, and not passed over.
+    let cut = folder.join("results/cut.json");
+    let whole = std::fs::read(&second).unwrap();
+    std::fs::write(&cut, &whole[..whole.len() / 2]).unwrap();
+    let path = |part: &str| folder.join(part).display().to_string();
+    let output =
+        pinpose(&["report", &path("results"), "--truth", &path("truth.json"), "--out", &path("report")]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && said.contains("cut.json") && said.contains("cut short"), "{said}");
 }

@@ -1,16 +1,19 @@
 //! The files of a study, and the example study: it is packed from the demo scene, and its truth stays beside it.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 use pinpose::formats::{Archive, NamedFile, read_mesh_with, read_photo_header};
 use pinpose::math::{Intrinsics, Pose};
-use pinpose::scene::{Annotation, AnnotationState, CameraOrigin, Scene};
-use pinpose::study::pack::{Draft, Pack, Role, StudyFiles};
+use pinpose::scene::{Annotation, AnnotationState, CameraOrigin, Scene, Symmetries};
+use pinpose::study::check::check;
+use pinpose::study::pack::{Draft, Pack, Role, StudyFiles, reopened};
 use pinpose::study::{
     Completion, Environment, Item, ItemKind, Participant, Plan, Questionnaire, QuestionnaireKind,
-    QuestionnaireTime, RESULTS_SCHEMA, Results, STUDY_SCHEMA, StartPose, Study, TRUTH_SCHEMA, Truth, rfc3339,
+    QuestionnaireTime, RESULTS_SCHEMA, Results, STUDY_SCHEMA, StartPose, Study, TRUTH_SCHEMA, Truth,
+    framed_mesh, rfc3339,
 };
 use serde_json::Value;
 
@@ -145,6 +148,108 @@ fn the_example_study_is_what_the_demo_scene_makes_and_holds_no_truth() {
     let paths: Vec<String> = archive.listing("s").unwrap().paths().map(str::to_owned).collect();
     assert!(paths.iter().all(|path| path == "study.json" || path.starts_with("assets/")), "{paths:?}");
     assert!(pack.download_bytes() < 2 << 20, "{}", pack.download_bytes());
+}
+
+#[test]
+fn an_exported_study_comes_back_to_be_changed() {
+    let mut scene = researchers_scene();
+    let object = scene.objects[1].id;
+    scene.object_mut(object).unwrap().symmetries = Symmetries {
+        discrete: vec![Pose::exp(DVec3::Z * std::f64::consts::PI, DVec3::ZERO)],
+        continuous: Vec::new(),
+    };
+    let mut draft = Draft::of_scene(&scene, example_study());
+    draft.chosen.iter_mut().zip(CHOSEN).for_each(|(chosen, (.., role))| chosen.role = role);
+    draft.chosen[1].set = Some("cars".to_owned());
+    draft.chosen[2].set = Some("mugs".to_owned());
+    let photo = demo().join("bop/test/000001/rgb/000010.jpg");
+    draft.pictures = vec![("hint.jpg".to_owned(), std::fs::read(photo).unwrap().into())];
+    draft.study.texts.instructions += "\n\n![a hint](hint.jpg)\n";
+    let pack = draft.pack(&scene).unwrap();
+
+    let files = StudyFiles::from_zip(pack.zip().unwrap().into()).unwrap();
+    let photos: BTreeMap<_, _> = files
+        .study
+        .photos
+        .iter()
+        .map(|photo| {
+            let file = files.file(&photo.asset).unwrap();
+            (photo.id.clone(), Arc::new(read_photo_header(&file).unwrap()))
+        })
+        .collect();
+    let meshes: BTreeMap<_, _> = files
+        .study
+        .objects
+        .iter()
+        .map(|object| {
+            let companions: Vec<NamedFile> =
+                object.companions.iter().map(|asset| files.file(asset).unwrap()).collect();
+            let mesh = read_mesh_with(&files.file(&object.mesh).unwrap(), &companions).unwrap().0;
+            (object.id.clone(), framed_mesh(&files.study, &object.id, &Arc::new(mesh)).unwrap())
+        })
+        .collect();
+    let (scene, draft) = reopened(&files, &photos, &meshes, Some(&pack.truth)).unwrap();
+    let again = draft.pack(&scene).unwrap();
+    let truths = |pack: &Pack| -> Vec<_> {
+        pack.truth
+            .samples
+            .iter()
+            .map(|sample| {
+                (
+                    sample.id.clone(),
+                    sample.set.clone(),
+                    sample.pose,
+                    sample.photo_sha256.clone(),
+                    sample.symmetries.clone(),
+                )
+            })
+            .collect()
+    };
+    assert_eq!(truths(&again), truths(&pack));
+    assert_eq!(again.study.texts, pack.study.texts);
+    assert_eq!(again.study.practice[0].truth, pack.study.practice[0].truth);
+    let assets =
+        |pack: &Pack| pack.study.assets().into_iter().map(|asset| asset.sha256.clone()).collect::<Vec<_>>();
+    assert_eq!(assets(&again), assets(&pack));
+
+    // Without its truth it comes too, and nothing is made up.
+    let (scene, draft) = reopened(&files, &photos, &meshes, None).unwrap();
+    let known: Vec<bool> =
+        draft.chosen.iter().map(|chosen| draft.truth_of(&scene, chosen).is_some()).collect();
+    assert_eq!(known.iter().filter(|known| **known).count(), 1, "only the practice sample's is in the study");
+    let mut other = pack.truth.clone();
+    other.study = "other".to_owned();
+    let refused = reopened(&files, &photos, &meshes, Some(&other)).unwrap_err().to_string();
+    assert!(refused.contains("true poses of the study \"other\""), "{refused}");
+}
+
+#[test]
+fn pictures_of_texts_are_looked_for_and_stripped() {
+    let scene = researchers_scene();
+    let mut draft = Draft::of_scene(&scene, example_study());
+    draft.chosen.iter_mut().zip(CHOSEN).for_each(|(chosen, (.., role))| chosen.role = role);
+    draft.study.texts.consent += "\n\n![us](we.jpg)";
+    let says = |draft: &Draft, words: &str| {
+        let pack = draft.pack(&scene);
+        check(draft, &scene, pack.as_ref()).iter().any(|finding| finding.text.contains(words))
+    };
+    assert!(says(&draft, "A text shows we.jpg, which is not among the pictures"));
+    // A JPEG with a comment, as cameras and programs write them.
+    let photo = std::fs::read(demo().join("bop/test/000001/rgb/000010.jpg")).unwrap();
+    let secret = b"taken at home";
+    let mut told = photo[..2].to_vec();
+    told.extend([0xff, 0xfe, 0, (secret.len() + 2) as u8]);
+    told.extend(secret);
+    told.extend(&photo[2..]);
+    draft.pictures = vec![("we.jpg".to_owned(), told.into()), ("unused.jpg".to_owned(), photo.into())];
+    assert!(!says(&draft, "A text shows") && says(&draft, "unused.jpg is loaded, and no text shows it"));
+    let pack = draft.pack(&scene).unwrap();
+    let picture = &pack.study.texts.pictures[0];
+    let (_, stored) = pack.files.iter().find(|(path, _)| *path == picture.path).unwrap();
+    assert!(picture.path.contains(&picture.sha256) && pinpose::photo::decode(stored).is_ok());
+    assert!(!stored.windows(secret.len()).any(|window| window == secret), "the comment is still there");
+    draft.pictures = vec![("we.jpg".to_owned(), b"no picture".to_vec().into())];
+    assert!(says(&draft, "we.jpg: this picture cannot be read"));
 }
 
 #[test]

@@ -8,12 +8,22 @@ use pinpose::study::check::Finding;
 use pinpose::study::questionnaire::tlx_pairs;
 use pinpose::study::{AnswerValue, Condition, Feedback, ItemKind, Study, Tool};
 use pinpose::ui::study::{
-    FinishView, Pictures, Sending, StudyRequest, StudyScreen, StudyView, TrialView, draw,
+    FinishView, Pictures, Rehearsal, Sending, StudyRequest, StudyScreen, StudyView, TrialView, draw,
 };
 use pinpose::ui::{self, BuilderView, StudyBuild, UiState};
 
 use crate::studies::example_pack;
 use crate::support::{NOW_MS, quiet_surroundings, small_session};
+
+/// Pictures as a practice pose leaves them.
+fn feedback_pictures(ctx: &egui::Context) -> Pictures {
+    let mut pictures = Pictures::default();
+    for (number, name) in ui::study::FEEDBACK_PICTURES.iter().enumerate() {
+        let rgba = [60 + 60 * number as u8, 150, 90, 255].repeat(40 * 30);
+        pictures.insert(ctx, name, &pinpose::photo::Pixels { width: 40, height: 30, rgba });
+    }
+    pictures
+}
 
 struct Shown {
     session: Session,
@@ -38,6 +48,9 @@ fn harness(screen: Screen) -> Harness<'static, Shown> {
     let mut harness = Harness::builder().with_size([1024.0, 720.0]).build_ui_state(
         move |ui, shown: &mut Shown| {
             ui::apply_theme(ui.ctx());
+            if shown.pictures.get(ui::study::FEEDBACK_PICTURES[0]).is_none() {
+                shown.pictures = feedback_pictures(ui.ctx());
+            }
             let hands = Hands::default();
             let view = StudyView {
                 title: &shown.study.title,
@@ -46,6 +59,7 @@ fn harness(screen: Screen) -> Harness<'static, Shown> {
                 pictures: &shown.pictures,
                 page: 1,
                 is_preview: false,
+                can_rehearse: false,
             };
             let around = quiet_surroundings(&hands);
             draw(ui, &shown.session, &view, &around, &mut shown.state, &mut shown.requests);
@@ -91,6 +105,14 @@ fn tlx(study: &Study) -> StudyScreen<'_> {
     StudyScreen::Questionnaire { questionnaire: &study.questionnaires[0], about: None, pairs: &[] }
 }
 
+fn problem(_: &Study) -> StudyScreen<'_> {
+    StudyScreen::Problem {
+        text: "A part of this study is not where it should be. Please check that the link is complete.",
+        details: "assets/4ab1.ply: the server says that there is no such file.",
+        can_retry: true,
+    }
+}
+
 fn finish(study: &Study) -> StudyScreen<'_> {
     StudyScreen::Finish(FinishView {
         thanks: &study.texts.thanks,
@@ -104,12 +126,13 @@ fn finish(study: &Study) -> StudyScreen<'_> {
 
 #[test]
 fn the_screens_look_as_they_did() {
-    let screens: [(&str, Screen); 6] = [
+    let screens: [(&str, Screen); 7] = [
         ("study-consent", |study| StudyScreen::Consent { text: &study.texts.consent }),
         ("study-instructions", instructions),
         ("study-trial", trial),
         ("study-feedback", |_| StudyScreen::Feedback { feedback: &FEEDBACK, may_try_again: true }),
         ("study-tlx", tlx),
+        ("study-problem", problem),
         ("study-finish", finish),
     ];
     let mut results = SnapshotResults::new();
@@ -250,4 +273,43 @@ fn an_incomplete_study_is_not_exported() {
     harness.get_by_label("Export study").click();
     harness.run_steps(3);
     assert!(harness.state().1.iter().all(|build| matches!(build, StudyBuild::Check(_))));
+}
+
+#[test]
+fn a_preview_is_rehearsed_with_as_many_as_are_asked_for() {
+    let mut harness = Harness::builder().with_size([1024.0, 720.0]).build_ui_state(
+        |ui, shown: &mut Shown| {
+            ui::apply_theme(ui.ctx());
+            let hands = Hands::default();
+            let view = StudyView {
+                title: &shown.study.title,
+                contact: "",
+                screen: StudyScreen::Consent { text: "# Welcome" },
+                pictures: &shown.pictures,
+                page: 1,
+                is_preview: true,
+                can_rehearse: true,
+            };
+            let around = quiet_surroundings(&hands);
+            draw(ui, &shown.session, &view, &around, &mut shown.state, &mut shown.requests);
+        },
+        Shown {
+            session: small_session(),
+            study: example_pack().study,
+            pictures: Pictures::default(),
+            state: UiState::default(),
+            requests: Vec::new(),
+        },
+    );
+    harness.run_steps(4);
+    click(&mut harness, "Simulate participants…");
+    let options = SnapshotOptions::new().threshold(2.0).output_path("tests/snapshots");
+    harness.snapshot_options("study-rehearsal", &options);
+    click(&mut harness, "See the report");
+    let expected = Rehearsal { participants: 11, seed: 1, as_files: false };
+    assert_eq!(harness.state_mut().requests.split_off(0), [StudyRequest::Rehearse(expected)]);
+    click(&mut harness, "Simulate participants…");
+    click(&mut harness, "Download files");
+    let expected = Rehearsal { as_files: true, ..expected };
+    assert_eq!(harness.state().requests, [StudyRequest::Rehearse(expected)]);
 }

@@ -23,6 +23,8 @@ pub fn quiet_surroundings(hands: &Hands) -> Surroundings<'_> {
         saving: Saving::Saved,
         busy: None,
         builder: None,
+        report: None,
+        kept: None,
         update_ready: false,
         files_hover: false,
         dataset: None,

@@ -1,51 +1,35 @@
 //! A study on its way in: `study.json` or a zip, its files one after the other, and what the worker makes of them.
+//!
+//! As soon as the texts can be shown, the participant reads; photos and meshes come meanwhile.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::{Participating, Ready, State};
+use super::words::Trouble;
+use super::{Participating, Purpose, Ready, State, newest_kept};
 use crate::app::jobs::{Done, JobKind};
 use crate::app::loading::Loading as Jobs;
-use crate::platform::{self, EXAMPLE_STUDY_PATH, Saved};
-use crate::scene::{MeshAsset, PhotoAsset};
+use crate::platform::{self, EXAMPLE_STUDY_PATH, FetchError, Saved};
 use crate::study::pack::{STUDY_NAME, StudyFiles};
-use crate::study::{Asset, Participation, framed_mesh};
+use crate::study::{Asset, Participation, Sample, framed_mesh};
 
 /// What has come since the last frame.
 pub enum Arrived {
-    Zip(Result<Vec<u8>, String>),
-    Json(Result<Vec<u8>, String>),
-    File(Asset, Result<Vec<u8>, String>),
+    Zip(Result<Vec<u8>, FetchError>),
+    Json(Result<Vec<u8>, FetchError>),
+    File(Asset, Result<Vec<u8>, FetchError>),
     Kept(Option<Saved>),
+    /// Another tab of this browser has the participation.
+    IsElsewhere,
 }
 
-/// How far a study has come.
-#[derive(Default)]
-pub struct Loading {
-    files: Option<StudyFiles>,
-    photos: BTreeMap<String, Arc<PhotoAsset>>,
-    meshes: BTreeMap<String, Arc<MeshAsset>>,
-    /// Files are with the worker.
-    is_reading: bool,
-    /// Photos and meshes that the worker has not read yet.
-    unread: usize,
-}
+/// A study's zip may have so many bytes: the most that a browser gives a page without trouble.
+const MOST_ZIP_BYTES: u64 = 1 << 30;
+/// And `study.json`, which is text.
+const MOST_JSON_BYTES: u64 = 32 << 20;
 
-impl Loading {
-    fn of(files: StudyFiles) -> Self {
-        Self { files: Some(files), ..Self::default() }
-    }
-
-    /// Files that are done, of all that there are. Each is fetched and then read.
-    pub fn progress(&self) -> (usize, usize) {
-        let Some(files) = &self.files else { return (0, 0) };
-        let fetched = files.study.assets().len();
-        let read = files.study.photos.len() + files.study.objects.len();
-        let missing = files.missing().len();
-        let unread = if self.is_reading { self.unread } else { read };
-        (fetched + read - missing - unread, fetched + read)
-    }
-}
+/// A file that did not come, while there is something to do without it, is asked for again after this time.
+const REFETCH_MS: f64 = 4000.0;
 
 /// Where a study is: a zip, or a folder with `study.json`.
 fn address(study: &str) -> (String, bool) {
@@ -66,12 +50,14 @@ fn address(study: &str) -> (String, bool) {
 impl Participating {
     /// Fetches the study that the link names.
     pub(super) fn fetch_study(&mut self) {
-        self.state = State::Loading(Box::default());
+        self.state = State::Loading(None);
+        self.refetch_at_ms = None;
         let Some(link) = &self.link else { return };
         let (url, is_zip) = address(&link.study);
         let (arrived, ctx) = (self.arrived.clone(), self.ctx.clone());
         platform::spawn(async move {
-            let bytes = platform::fetch(&url).await;
+            let most = if is_zip { MOST_ZIP_BYTES } else { MOST_JSON_BYTES };
+            let bytes = platform::fetch(&url, most).await;
             let came = if is_zip { Arrived::Zip(bytes) } else { Arrived::Json(bytes) };
             arrived.borrow_mut().push_back(came);
             ctx.request_repaint();
@@ -82,85 +68,164 @@ impl Participating {
         let (arrived, ctx) = (self.arrived.clone(), self.ctx.clone());
         let (storage, id) = (self.storage.clone(), id.clone());
         platform::spawn(async move {
-            // What cannot be read is none: the participant begins.
-            let mut kept = storage.load(&id).await.unwrap_or_default();
-            // What was put aside when the page went is newer than what was stored before.
-            if let Some(journal) = storage.read_journal(&id) {
-                let stored_ms = kept.as_ref().map_or(0.0, |kept| kept.heading.changed_at_ms);
-                if journal.changed_at_ms > stored_ms {
-                    kept = Some(Saved { json: journal.json, ..kept.unwrap_or_default() });
-                }
-            }
-            arrived.borrow_mut().push_back(Arrived::Kept(kept));
+            // Two tabs would each write over what the other one has kept. Where a browser cannot tell, there is one.
+            let came = match storage.claim(&id).await.unwrap_or(true) {
+                true => Arrived::Kept(newest_kept(&*storage, &id).await),
+                false => Arrived::IsElsewhere,
+            };
+            arrived.borrow_mut().push_back(came);
             ctx.request_repaint();
         });
     }
 
     pub(super) fn take_zip(&mut self, zip: Arc<[u8]>) {
         match StudyFiles::from_zip(zip) {
-            Ok(files) => self.state = State::Loading(Box::new(Loading::of(files))),
-            Err(error) => self.fail(format!("The study cannot be read: {error}"), false),
+            Ok(files) => self.take_study(files),
+            Err(error) => self.fail(Trouble::reading("the study's zip", &error)),
         }
     }
 
-    pub(super) fn tick_arriving(&mut self, jobs: &mut Jobs) {
+    /// `study.json` is here: what it says is shown, and its files are fetched.
+    fn take_study(&mut self, files: StudyFiles) {
+        self.title.clone_from(&files.study.title);
+        self.contact.clone_from(&files.study.contact);
+        let missing = files.missing();
+        self.state = State::Loading(Some(Box::new(Ready::of(files))));
+        self.fetch_files(missing);
+    }
+
+    pub(super) fn tick_arriving(&mut self, jobs: &mut Jobs, now_ms: f64) {
         loop {
             let arrived = self.arrived.borrow_mut().pop_front();
             match arrived {
-                Some(arrived) => self.take_arrived(arrived),
+                Some(arrived) => self.take_arrived(arrived, now_ms),
                 None => break,
             }
         }
-        let State::Loading(loading) = &mut self.state else { return };
-        let result = loading.advance(jobs);
-        match result {
-            Ok(false) => {}
-            Ok(true) => {
-                let Loading { files, photos, meshes, .. } = std::mem::take(&mut **loading);
-                if let Some(files) = files {
-                    self.begin(Ready { files, photos, meshes });
+        self.refetch(now_ms);
+        let Some(ready) = self.ready_mut() else { return };
+        if let Err(problem) = ready.advance(jobs) {
+            return self.fail(Trouble::of("This study was not put together correctly.", problem, false));
+        }
+        let is_complete = ready.is_complete();
+        let can_begin = is_complete || ready.has_pictures();
+        // What is watched or changed is shown whole; a participant reads meanwhile.
+        let can_begin = can_begin && (is_complete || matches!(self.purpose, Purpose::TakePart));
+        match &mut self.state {
+            State::Loading(ready) if can_begin => {
+                if let Some(ready) = ready.take() {
+                    self.begin(*ready);
                 }
             }
-            Err(problem) => self.fail(problem, false),
+            // The clock of a trial that is gone on with runs: it is gone on with when it can be shown.
+            State::LookingBack { kept, .. } if is_complete => {
+                if let Some(kept) = kept.take() {
+                    self.run(Some(*kept));
+                }
+            }
+            State::Running(running) if running.can_go_on() => {
+                running.enter(now_ms);
+                self.turn_page();
+            }
+            _ => {}
         }
     }
 
-    fn take_arrived(&mut self, arrived: Arrived) {
+    fn take_arrived(&mut self, arrived: Arrived, now_ms: f64) {
+        let address = self.link.as_ref().map(|link| address(&link.study).0).unwrap_or_default();
         match arrived {
             Arrived::Zip(Ok(bytes)) => self.take_zip(bytes.into()),
             Arrived::Json(Ok(bytes)) => match StudyFiles::from_json(&bytes) {
-                Ok(files) => {
-                    let missing = files.missing();
-                    self.state = State::Loading(Box::new(Loading::of(files)));
-                    self.fetch_files(missing);
-                }
-                Err(error) => self.fail(format!("The study cannot be read: {error}"), false),
+                Ok(files) => self.take_study(files),
+                Err(error) => self.fail(Trouble::reading(&address, &error)),
             },
             Arrived::File(asset, Ok(bytes)) => {
-                let State::Loading(loading) = &mut self.state else { return };
-                let added = loading.files.as_mut().map(|files| files.add(&asset, bytes.into()));
-                if let Some(Err(error)) = added {
-                    self.fail(error.to_string(), true);
+                let Some(ready) = self.ready_mut() else { return };
+                if let Err(error) = ready.files.add(&asset, bytes.into()) {
+                    self.fail(Trouble::reading(&asset.path, &error));
                 }
             }
-            Arrived::Zip(Err(problem)) | Arrived::Json(Err(problem)) | Arrived::File(_, Err(problem)) => {
-                self.fail(format!("A file of the study did not come: {problem}"), true);
+            Arrived::File(asset, Err(error)) => self.take_missing(&asset, &error, now_ms),
+            Arrived::Zip(Err(error)) | Arrived::Json(Err(error)) => {
+                self.fail(Trouble::fetching(&address, &error));
+            }
+            Arrived::IsElsewhere => {
+                let text = "You have this study open in another tab or window of this browser. Please go on there. \
+                    Or close it there, and then try again here: nothing of what you have done is lost.";
+                self.fail(Trouble::of(text, "", true));
             }
             Arrived::Kept(saved) => {
-                self.run(saved.and_then(|saved| Participation::from_json(&saved.json)));
+                let kept = saved.and_then(|saved| Participation::from_json(&saved.json));
+                match (kept, &mut self.state) {
+                    (Some(found), State::LookingBack { kept, .. }) => *kept = Some(Box::new(found)),
+                    _ => self.run(None),
+                }
             }
+        }
+    }
+
+    /// A file did not come. Who has something to do meanwhile is not told of a network that is gone for a moment.
+    fn take_missing(&mut self, asset: &Asset, error: &FetchError, now_ms: f64) {
+        let is_waited_for = match &self.state {
+            State::Running(running) => running.waits,
+            _ => true,
+        };
+        let may_pass = matches!(error, FetchError::Unreachable(_) | FetchError::Status(500..));
+        match may_pass && !is_waited_for {
+            true => self.refetch_at_ms = Some(now_ms + REFETCH_MS),
+            false => self.fail(Trouble::fetching(&asset.path, error)),
+        }
+    }
+
+    fn refetch(&mut self, now_ms: f64) {
+        let Some(at_ms) = self.refetch_at_ms else { return };
+        if now_ms < at_ms {
+            let wait = std::time::Duration::from_secs_f64((at_ms - now_ms) / 1000.0);
+            return self.ctx.request_repaint_after(wait);
+        }
+        self.refetch_at_ms = None;
+        if let Some(ready) = self.ready() {
+            self.fetch_files(ready.files.missing());
         }
     }
 
     /// One after the other: a slow line is not made faster by more at once, and the first problem ends it.
-    fn fetch_files(&self, missing: Vec<Asset>) {
-        let Some(link) = &self.link else { return };
+    fn fetch_files(&self, mut missing: Vec<Asset>) {
+        let (Some(link), Some(study)) = (&self.link, self.ready().map(|ready| &ready.files.study)) else {
+            return;
+        };
+        // Texts are read first, and practice comes before the rest.
+        let practice: BTreeSet<&str> = study
+            .practice
+            .iter()
+            .flat_map(|one| [one.sample.photo.as_str(), one.sample.object.as_str()])
+            .collect();
+        let of_practice: BTreeSet<&str> = study
+            .photos
+            .iter()
+            .filter(|photo| practice.contains(photo.id.as_str()))
+            .map(|photo| photo.asset.path.as_str())
+            .chain(
+                study
+                    .objects
+                    .iter()
+                    .filter(|object| practice.contains(object.id.as_str()))
+                    .flat_map(|object| std::iter::once(&object.mesh).chain(&object.companions))
+                    .map(|asset| asset.path.as_str()),
+            )
+            .collect();
+        let pictures = &study.texts.pictures;
+        missing.sort_by_key(|asset| match pictures.iter().any(|picture| picture.path == asset.path) {
+            true => 0,
+            false => 1 + u8::from(!of_practice.contains(asset.path.as_str())),
+        });
         let (url, _) = address(&link.study);
         let folder = url.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
         let (arrived, ctx) = (self.arrived.clone(), self.ctx.clone());
         platform::spawn(async move {
             for asset in missing {
-                let bytes = platform::fetch(&format!("{folder}{}", asset.path)).await;
+                // What has more bytes than the study says is not the file that it speaks of.
+                let bytes = platform::fetch(&format!("{folder}{}", asset.path), asset.bytes).await;
                 let is_problem = bytes.is_err();
                 arrived.borrow_mut().push_back(Arrived::File(asset, bytes));
                 ctx.request_repaint();
@@ -170,73 +235,101 @@ impl Participating {
             }
         });
     }
+
+    /// The study with what has come of it.
+    pub(super) fn ready(&self) -> Option<&Ready> {
+        match &self.state {
+            State::Loading(ready) => ready.as_deref(),
+            State::AskId(ready) | State::LookingBack { ready, .. } => Some(ready),
+            State::Running(running) => Some(&running.ready),
+            State::Problem(_) | State::Watching(_) | State::ToChange(_) => None,
+        }
+    }
+
+    fn ready_mut(&mut self) -> Option<&mut Ready> {
+        match &mut self.state {
+            State::Loading(ready) => ready.as_deref_mut(),
+            State::AskId(ready) | State::LookingBack { ready, .. } => Some(ready),
+            State::Running(running) => Some(&mut running.ready),
+            State::Problem(_) | State::Watching(_) | State::ToChange(_) => None,
+        }
+    }
 }
 
-impl Loading {
-    /// True once every file is there and read.
-    fn advance(&mut self, jobs: &mut Jobs) -> Result<bool, String> {
-        let Some(files) = &self.files else { return Ok(false) };
-        if !files.missing().is_empty() {
-            return Ok(false);
-        }
-        if !self.is_reading {
-            self.is_reading = true;
-            self.unread = submit(files, jobs);
-        }
-        for (path, done) in jobs.take_for_study() {
-            self.unread = self.unread.saturating_sub(1);
-            let named = |problem: String| format!("{path}: {problem}");
+impl Ready {
+    fn of(files: StudyFiles) -> Self {
+        Self { files, photos: BTreeMap::new(), meshes: BTreeMap::new(), submitted: BTreeSet::new() }
+    }
+
+    /// Files that are done, of all that there are. Each is fetched and then read.
+    pub fn progress(&self) -> (usize, usize) {
+        let study = &self.files.study;
+        let fetched = study.assets().len();
+        let to_read = study.photos.len() + study.objects.len();
+        let done = fetched - self.files.missing().len() + self.photos.len() + self.meshes.len();
+        (done, fetched + to_read)
+    }
+
+    pub fn is_complete(&self) -> bool {
+        let study = &self.files.study;
+        self.photos.len() == study.photos.len()
+            && self.meshes.len() == study.objects.len()
+            && self.has_pictures()
+    }
+
+    /// All that the texts show is here.
+    fn has_pictures(&self) -> bool {
+        self.files.study.texts.pictures.iter().all(|picture| self.files.has(picture))
+    }
+
+    /// A sample can be shown.
+    pub fn has(&self, sample: &Sample) -> bool {
+        self.photos.contains_key(&sample.photo) && self.meshes.contains_key(&sample.object)
+    }
+
+    /// Gives the worker what has come, and takes what it has read.
+    fn advance(&mut self, jobs: &mut Jobs) -> Result<(), String> {
+        self.submit(jobs);
+        for (id, done) in jobs.take_for_study() {
+            let named = |problem: String| format!("{id}: {problem}");
             match done.map_err(named)? {
                 Done::Mesh(mesh, _) => {
-                    self.meshes.insert(path, mesh);
+                    let framed =
+                        framed_mesh(&self.files.study, &id, &mesh).map_err(|error| error.to_string())?;
+                    self.meshes.insert(id, framed);
                 }
                 Done::Headers(photos) => {
                     if let Some(photo) = photos.into_iter().next() {
                         let photo = photo.map_err(named)?;
-                        self.photos.insert(path, photo);
+                        self.photos.insert(id, photo);
                     }
                 }
                 _ => {}
             }
         }
-        if self.unread > 0 {
-            return Ok(false);
-        }
-        self.frame_meshes()?;
-        Ok(true)
-    }
-
-    /// From the meshes of files to those of objects, each in its frame.
-    fn frame_meshes(&mut self) -> Result<(), String> {
-        let Some(files) = &self.files else { return Ok(()) };
-        let mut framed = BTreeMap::new();
-        for object in &files.study.objects {
-            let loaded = self.meshes.get(&object.id).ok_or_else(|| format!("{}: no mesh", object.name))?;
-            let mesh = framed_mesh(&files.study, &object.id, loaded).map_err(|error| error.to_string())?;
-            framed.insert(object.id.clone(), mesh);
-        }
-        self.meshes = framed;
         Ok(())
     }
-}
 
-/// Gives the worker every mesh by its object's id, and every photo by its own.
-fn submit(files: &StudyFiles, jobs: &mut Jobs) -> usize {
-    let mut count = 0;
-    for photo in &files.study.photos {
-        if let Some(file) = files.file(&photo.asset) {
-            jobs.read_for_study(JobKind::Headers, &photo.id, file, &[]);
-            count += 1;
+    /// Every mesh goes by its object's id, and every photo by its own.
+    fn submit(&mut self, jobs: &mut Jobs) {
+        for photo in &self.files.study.photos {
+            if let Some(file) = self.files.file(&photo.asset)
+                && self.submitted.insert(format!("photo {}", photo.id))
+            {
+                jobs.read_for_study(JobKind::Headers, &photo.id, file, &[]);
+            }
+        }
+        for object in &self.files.study.objects {
+            let companions: Vec<_> =
+                object.companions.iter().filter_map(|asset| self.files.file(asset)).collect();
+            if companions.len() == object.companions.len()
+                && let Some(file) = self.files.file(&object.mesh)
+                && self.submitted.insert(format!("object {}", object.id))
+            {
+                jobs.read_for_study(JobKind::Mesh, &object.id, file, &companions);
+            }
         }
     }
-    for object in &files.study.objects {
-        let companions: Vec<_> = object.companions.iter().filter_map(|asset| files.file(asset)).collect();
-        if let Some(file) = files.file(&object.mesh) {
-            jobs.read_for_study(JobKind::Mesh, &object.id, file, &companions);
-            count += 1;
-        }
-    }
-    count
 }
 
 #[cfg(test)]

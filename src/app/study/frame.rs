@@ -41,6 +41,8 @@ impl PinPose {
             scenes: &[],
             store: ui::StoreView::default(),
             builder: None,
+            report: None,
+            kept: None,
             update_ready: false,
             dataset: None,
             files_hover: false,

@@ -31,6 +31,18 @@ pub fn kept_id(study: &str, participant: &str) -> SceneId {
     SceneId::new(&format!("{PREFIX}{name}-{short}"))
 }
 
+/// What is kept of a participation; of the store and what was put aside when the page went, the newer one. What cannot be read
+/// is none.
+pub async fn newest_kept(storage: &dyn Storage, id: &SceneId) -> Option<Saved> {
+    let kept = storage.load(id).await.unwrap_or_default();
+    let Some(journal) = storage.read_journal(id) else { return kept };
+    let stored_ms = kept.as_ref().map_or(0.0, |kept| kept.heading.changed_at_ms);
+    match journal.changed_at_ms > stored_ms {
+        true => Some(Saved { json: journal.json, ..kept.unwrap_or_default() }),
+        false => kept,
+    }
+}
+
 /// Writes a participation to the store.
 pub struct Keeping {
     shared: Option<Rc<RefCell<Shared>>>,

@@ -2,16 +2,20 @@
 
 mod allowed;
 mod arriving;
+mod changing;
+mod feedback;
 mod frame;
 mod keeping;
 mod requests;
 mod sending;
+mod simulating;
 mod trial;
 mod view;
 mod watching;
+mod words;
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -20,14 +24,21 @@ use crate::platform::{self, Storage};
 use crate::scene::{MeshAsset, PhotoAsset};
 use crate::session::Session;
 use crate::study::pack::StudyFiles;
-use crate::study::{AskedFor, Environment, EventKind, Participant, Participation, Plan, Reopened, Step};
+use crate::study::{
+    AskedFor, Environment, EventKind, Participant, Participation, Plan, Reopened, Results, Step, Truth,
+};
 use crate::ui::study::{Pictures, StudyRequest, TlxPair};
 
 use arriving::Arrived;
+pub use changing::Opened;
 use keeping::Keeping;
-pub use keeping::is_kept_id;
+pub use keeping::{is_kept_id, newest_kept};
 use sending::Sender;
 pub use watching::Picked;
+use words::Trouble;
+
+/// Of a text's picture, in pixels: twice as wide as the column of text.
+const MOST_PICTURE_SIDE: u32 = 1280;
 
 /// A study that somebody takes part in, from its address to the way out.
 pub struct Participating {
@@ -35,6 +46,11 @@ pub struct Participating {
     /// What the page's address says, or nothing for a preview.
     link: Option<Link>,
     state: State,
+    /// The study's, once they are known.
+    title: String,
+    contact: String,
+    /// When files that did not come are asked for again.
+    refetch_at_ms: Option<f64>,
     pictures: Pictures,
     /// Grows with every screen.
     page: usize,
@@ -45,8 +61,18 @@ pub struct Participating {
     backend: String,
     /// What the researcher had open, to come back to after a preview.
     before: Option<Box<Session>>,
-    /// Results that are to be watched.
-    watched: Option<crate::study::Results>,
+    purpose: Purpose,
+    /// Of a study that was just built: what its researcher alone knows.
+    truth: Option<Truth>,
+}
+
+/// What a study was opened for.
+enum Purpose {
+    TakePart,
+    /// To watch these results.
+    Watch(Box<Results>),
+    /// To be changed in the builder, with its true poses if they were at hand.
+    Change(Option<Box<Truth>>),
 }
 
 /// What a participant's address says.
@@ -57,28 +83,31 @@ pub struct Link {
 
 enum State {
     /// `study.json`, its files, and what is made of them.
-    Loading(Box<arriving::Loading>),
-    Problem {
-        text: String,
-        can_retry: bool,
-    },
+    /// Nothing until `study.json` is here.
+    Loading(Option<Box<Ready>>),
+    Problem(Trouble),
     /// All is here, but not who takes part.
     AskId(Box<Ready>),
-    /// What is kept of an earlier visit is on its way.
+    /// What is kept of an earlier visit is on its way; or it is here, and waits for the study's files.
     LookingBack {
         ready: Box<Ready>,
         participant: Participant,
+        kept: Option<Box<Participation>>,
     },
     Running(Box<Running>),
     Watching(Box<watching::Watching>),
+    /// On its way into the builder.
+    ToChange(Box<Opened>),
 }
 
-/// A study with all of its files read.
+/// A study with what has come of its files, read.
 pub struct Ready {
     files: StudyFiles,
     /// By their paths in the study.
     photos: BTreeMap<String, Arc<PhotoAsset>>,
     meshes: BTreeMap<String, Arc<MeshAsset>>,
+    /// What the worker has been given.
+    submitted: BTreeSet<String>,
 }
 
 /// A participation on screen.
@@ -92,6 +121,10 @@ struct Running {
     sender: Sender,
     /// Why the sample that comes next cannot be shown.
     problem: Option<String>,
+    /// It cannot be shown yet: its files are on their way.
+    waits: bool,
+    /// A practice pose was just confirmed: what was wrong with it is still to be drawn.
+    shows_new_feedback: bool,
     /// When the page goes on by itself.
     redirect_at_ms: Option<f64>,
 }
@@ -131,7 +164,10 @@ impl PinPose {
         Participating {
             ctx: self.ctx.clone(),
             link,
-            state: State::Loading(Box::default()),
+            state: State::Loading(None),
+            title: String::new(),
+            contact: String::new(),
+            refetch_at_ms: None,
             pictures: Pictures::default(),
             page: 0,
             arrived: Rc::default(),
@@ -139,7 +175,8 @@ impl PinPose {
             visibility,
             backend: self.backend.clone(),
             before: None,
-            watched: None,
+            purpose: Purpose::TakePart,
+            truth: None,
         }
     }
 
@@ -151,14 +188,16 @@ impl PinPose {
     pub(super) fn tick_study(&mut self) {
         let Some(mut study) = self.study.take() else { return };
         let now_ms = platform::now_ms();
-        study.tick_arriving(&mut self.loading);
+        study.tick_arriving(&mut self.loading, now_ms);
         if let State::Running(running) = &mut study.state {
             let hidden: Vec<(bool, f64)> = study.visibility.borrow_mut().drain(..).collect();
             running.tick_clock(&hidden, now_ms);
         }
         self.study = Some(study);
+        self.draw_feedback();
         self.tick_trial(now_ms);
         self.tick_watching(now_ms);
+        self.tick_study_to_change();
         if let Some(study) = &mut self.study
             && let State::Running(running) = &mut study.state
         {
@@ -168,14 +207,16 @@ impl PinPose {
     }
 
     pub(super) fn take_study_request(&mut self, request: StudyRequest) {
-        if request == StudyRequest::LeavePreview {
-            return self.leave_preview();
+        match request {
+            StudyRequest::LeavePreview => return self.leave_preview(),
+            StudyRequest::Rehearse(wanted) => return self.rehearse(wanted),
+            _ => {}
         }
         let Some(study) = &mut self.study else { return };
         let now_ms = platform::now_ms();
         match (&mut study.state, request) {
             (State::AskId(_), StudyRequest::Id(id)) => study.look_back(&id),
-            (State::Problem { .. }, StudyRequest::Retry) => study.fetch_study(),
+            (State::Problem(_), StudyRequest::Retry) => study.fetch_study(),
             (State::Watching(watching), request) => {
                 let done = watching.take_request(&request, now_ms);
                 if let Err(problem) = done {
@@ -196,18 +237,26 @@ impl PinPose {
     }
 
     fn leave_preview(&mut self) {
-        if let Some(before) =
-            self.study.take_if(|study| study.before.is_some()).and_then(|study| study.before)
-        {
+        let Some(study) = self.study.take_if(|study| study.before.is_some()) else { return };
+        let was_built = study.truth.is_some();
+        if let Some(before) = study.before {
             self.session = *before;
             self.hands = crate::interact::Hands::default();
+        }
+        if was_built {
+            self.ui_state.study_builder.show();
         }
     }
 }
 
 impl Participating {
-    fn fail(&mut self, text: impl Into<String>, can_retry: bool) {
-        self.state = State::Problem { text: text.into(), can_retry };
+    /// Of a preview: its researcher's.
+    pub fn know_truth(&mut self, truth: Truth) {
+        self.truth = Some(truth);
+    }
+
+    fn fail(&mut self, trouble: Trouble) {
+        self.state = State::Problem(trouble);
         self.turn_page();
     }
 
@@ -217,14 +266,20 @@ impl Participating {
         self.ctx.request_repaint();
     }
 
-    /// All files are here: the participant is known from the link, or asked for.
+    /// The texts can be shown: the participant is known from the link, or asked for.
     fn begin(&mut self, ready: Ready) {
         if let Some(problem) = self.cannot_work() {
-            return self.fail(problem, true);
+            return self.fail(Trouble::of(problem, "", true));
         }
         self.show_pictures(&ready);
-        if let Some(results) = self.watched.take() {
-            return self.watch(ready, results);
+        match std::mem::replace(&mut self.purpose, Purpose::TakePart) {
+            Purpose::TakePart => {}
+            Purpose::Watch(results) => return self.watch(ready, *results),
+            Purpose::Change(truth) => {
+                self.open_to_change(&ready, truth.as_deref());
+                self.purpose = Purpose::Change(truth);
+                return;
+            }
         }
         let named = |name: &String| platform::page_parameter(name).filter(|id| !id.trim().is_empty());
         let id = match self.link {
@@ -242,14 +297,16 @@ impl Participating {
         for asset in &ready.files.study.texts.pictures {
             let decoded = ready.files.file(asset).and_then(|file| crate::photo::decode(&file.bytes).ok());
             if let Some(decoded) = decoded {
-                self.pictures.insert(&self.ctx, &asset.name, &decoded.pixels);
+                // More than a graphics card may take, and than the column shows.
+                let pixels = crate::photo::thumbnail(&decoded.pixels, MOST_PICTURE_SIDE);
+                self.pictures.insert(&self.ctx, &asset.name, &pixels);
             }
         }
     }
 
     /// Looks for what is kept of an earlier visit.
     fn look_back(&mut self, id: &str) {
-        let state = std::mem::replace(&mut self.state, State::Loading(Box::default()));
+        let state = std::mem::replace(&mut self.state, State::Loading(None));
         let State::AskId(ready) = state else {
             self.state = state;
             return;
@@ -259,7 +316,7 @@ impl Participating {
             .filter_map(|(name, parameter)| Some((name.clone(), platform::page_parameter(parameter)?)));
         let participant = Participant { id: id.to_owned(), recruiter: given.collect() };
         let kept = self.link.as_ref().map(|_| keeping::kept_id(&ready.files.study.id, id));
-        self.state = State::LookingBack { ready, participant };
+        self.state = State::LookingBack { ready, participant, kept: None };
         match kept {
             Some(kept) => self.load_kept(&kept),
             None => self.run(None),
@@ -268,20 +325,27 @@ impl Participating {
 
     /// Begins, or goes on where an earlier visit ended.
     fn run(&mut self, kept: Option<Participation>) {
-        let state = std::mem::replace(&mut self.state, State::Loading(Box::default()));
-        let State::LookingBack { ready, participant } = state else { return };
+        let state = std::mem::replace(&mut self.state, State::Loading(None));
+        let State::LookingBack { ready, participant, .. } = state else {
+            // A file that cannot be had was noticed meanwhile: that stays on screen.
+            self.state = state;
+            return;
+        };
         let now_ms = platform::now_ms();
         let is_same = |kept: &Participation| kept.results.study.sha256 == ready.files.sha256;
         let reopened = kept.filter(is_same).map(|kept| kept.reopen(ready.files.study.resume, now_ms));
         let participation = match reopened {
             Some(Reopened::Blocked) => {
                 let text = "This study was begun here before, and it cannot be gone on with.";
-                return self.fail(text, false);
+                return self.fail(Trouble::of(text, "", false));
             }
             Some(Reopened::GoesOn(participation) | Reopened::Done(participation)) => *participation,
             Some(Reopened::Restarts) | None => match self.fresh(&ready, participant, now_ms) {
                 Ok(participation) => participation,
-                Err(problem) => return self.fail(problem, false),
+                Err(problem) => {
+                    let text = "You cannot take part with this link.";
+                    return self.fail(Trouble::of(text, problem, false));
+                }
             },
         };
         let id = participation.results.participant.id.clone();
@@ -298,6 +362,8 @@ impl Participating {
             keeping,
             sender,
             problem: None,
+            waits: false,
+            shows_new_feedback: false,
             redirect_at_ms: None,
         };
         running.enter(now_ms);

@@ -59,12 +59,19 @@ impl Running {
     pub(super) fn enter(&mut self, now_ms: f64) {
         self.stage = None;
         self.pairs = self.pairs_of_step();
+        self.waits = self.sample().is_some_and(|(sample, _)| !self.ready.has(sample));
         if self.participation.feedback().is_none()
+            && !self.waits
             && let Err(problem) = self.set_stage(now_ms)
         {
             self.problem = Some(format!("The next photo cannot be shown: {problem}."));
         }
         self.keeping.changed(&self.participation, now_ms);
+    }
+
+    /// What was waited for is here.
+    pub(super) fn can_go_on(&self) -> bool {
+        self.waits && self.sample().is_some_and(|(sample, _)| self.ready.has(sample))
     }
 
     fn set_stage(&mut self, now_ms: f64) -> Result<(), String> {
@@ -134,6 +141,7 @@ impl Running {
             });
             if let Some(said) = said {
                 self.participation.finish_practice(result, said);
+                self.shows_new_feedback = true;
             }
         } else {
             self.participation.finish_trial(result, now_ms);

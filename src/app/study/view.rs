@@ -1,36 +1,32 @@
 //! What the participant's screen shows, from where the participation is.
 
-use super::{Participating, Running, State};
+use super::words::Trouble;
+use super::{Participating, Ready, Running, State};
 use crate::platform;
 use crate::study::{RunningTrial, Step};
 use crate::ui::study::{FinishView, StudyScreen, StudyView, TrialView};
 
 impl Participating {
     pub fn view<'a>(&'a self, busy: Option<&'a str>) -> StudyView<'a> {
-        let study = match &self.state {
-            State::Running(running) => Some(&running.ready.files.study),
-            State::AskId(ready) | State::LookingBack { ready, .. } => Some(&ready.files.study),
-            State::Watching(watching) => Some(watching.study()),
-            State::Loading(_) | State::Problem { .. } => None,
-        };
         let screen = match &self.state {
-            State::Loading(loading) => {
-                let (done, all) = loading.progress();
-                StudyScreen::Loading { done, all }
+            State::Loading(ready) => loading(ready.as_deref()),
+            State::LookingBack { ready, .. } => loading(Some(ready)),
+            State::ToChange(_) => loading(None),
+            State::Problem(Trouble { text, details, can_retry }) => {
+                StudyScreen::Problem { text, details, can_retry: *can_retry }
             }
-            State::LookingBack { .. } => StudyScreen::Loading { done: 0, all: 0 },
-            State::Problem { text, can_retry } => StudyScreen::Problem { text, can_retry: *can_retry },
             State::AskId(_) => StudyScreen::AskId,
             State::Running(running) => running.screen(busy),
             State::Watching(watching) => StudyScreen::Replay(watching.view()),
         };
         StudyView {
-            title: study.map_or("", |study| &study.title),
-            contact: study.map_or("", |study| &study.contact),
+            title: &self.title,
+            contact: &self.contact,
             screen,
             pictures: &self.pictures,
             page: self.page,
             is_preview: self.link.is_none(),
+            can_rehearse: self.can_rehearse(),
         }
     }
 
@@ -56,12 +52,21 @@ impl Participating {
     }
 }
 
+/// How far the files have come.
+fn loading(ready: Option<&Ready>) -> StudyScreen<'static> {
+    let (done, all) = ready.map_or((0, 0), Ready::progress);
+    StudyScreen::Loading { done, all }
+}
+
 impl Running {
     fn screen<'a>(&'a self, busy: Option<&'a str>) -> StudyScreen<'a> {
         let study = &self.ready.files.study;
         let plan = &self.participation.plan;
         if let Some(text) = &self.problem {
-            return StudyScreen::Problem { text, can_retry: false };
+            return StudyScreen::Problem { text, details: "", can_retry: false };
+        }
+        if self.waits {
+            return loading(Some(&self.ready));
         }
         if self.participation.has_declined() {
             return StudyScreen::Declined;
@@ -70,7 +75,8 @@ impl Running {
             let id = plan.trials.get(trial).map(|trial| &trial.condition);
             id.and_then(|id| study.condition(id)).or_else(|| study.conditions.first())
         };
-        let nothing = StudyScreen::Problem { text: "The study has no such part.", can_retry: false };
+        let nothing =
+            StudyScreen::Problem { text: "The study has no such part.", details: "", can_retry: false };
         match self.step() {
             Step::Consent => StudyScreen::Consent { text: &study.texts.consent },
             Step::Instructions => condition_of(0).map_or(nothing, |condition| StudyScreen::Instructions {

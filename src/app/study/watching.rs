@@ -4,7 +4,8 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::{Participating, Ready, State};
+use super::words::Trouble;
+use super::{Participating, Purpose, Ready, State};
 use crate::app::PinPose;
 use crate::platform::{self, FileBytes};
 use crate::session::{Command, Notice, Session};
@@ -13,6 +14,9 @@ use crate::ui::study::{ReplayView, StudyRequest};
 
 /// Files that were picked, until they are looked at.
 pub type Picked = Rc<RefCell<Option<Vec<Result<FileBytes, String>>>>>;
+
+/// The example study is far smaller.
+const MOST_EXAMPLE_BYTES: u64 = 64 << 20;
 
 /// A participant's trials, and the one that is watched.
 pub struct Watching {
@@ -91,10 +95,6 @@ impl Watching {
         }
     }
 
-    pub fn study(&self) -> &crate::study::Study {
-        &self.ready.files.study
-    }
-
     pub fn take_request(&mut self, request: &StudyRequest, now_ms: f64) -> Result<(), String> {
         match request {
             StudyRequest::WatchTrial(trial) => self.choose(*trial, now_ms)?,
@@ -127,7 +127,8 @@ impl PinPose {
     pub(in crate::app) fn preview_address(&mut self, url: &'static str) {
         let (picked, ctx) = (self.building.picked.clone(), self.ctx.clone());
         platform::spawn(async move {
-            let fetched = platform::fetch(url).await;
+            let fetched = platform::fetch(url, MOST_EXAMPLE_BYTES).await;
+            let fetched = fetched.map_err(|error| format!("{url} {error}"));
             let file = fetched.map(|bytes| FileBytes { name: "study.zip".to_owned(), bytes });
             *picked.borrow_mut() = Some(vec![file]);
             ctx.request_repaint();
@@ -155,7 +156,7 @@ impl PinPose {
         };
         self.preview_study(zip);
         if let Some(study) = &mut self.study {
-            study.watched = results;
+            study.purpose = results.map_or(Purpose::TakePart, |results| Purpose::Watch(Box::new(results)));
         }
     }
 
@@ -197,7 +198,10 @@ impl Participating {
     pub(super) fn watch(&mut self, ready: Ready, results: Results) {
         match Watching::new(ready, results, platform::now_ms()) {
             Ok(watching) => self.state = State::Watching(Box::new(watching)),
-            Err(problem) => self.fail(format!("This cannot be watched: {problem}."), false),
+            Err(problem) => {
+                let text = format!("This cannot be watched: {problem}.");
+                self.fail(Trouble::of(&text, "", false));
+            }
         }
         self.turn_page();
     }

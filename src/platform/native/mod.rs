@@ -5,6 +5,7 @@ mod export;
 mod file_tree;
 mod folder;
 mod network;
+mod pictures;
 mod preferences;
 
 use std::path::{Path, PathBuf};
@@ -18,6 +19,7 @@ pub use export::{ExportFolder, GrowingDownload};
 pub use file_tree::{open_folder, pick_folder, watch_dropped_folders};
 pub use folder::FolderStorage;
 pub use network::{browser_facts, fetch, go_to, send_request, watch_hidden};
+pub use pictures::{png_of_svg, show_page};
 pub use preferences::{read_stored_preference, write_stored_preference};
 
 /// Milliseconds since 1970, UTC.

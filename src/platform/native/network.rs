@@ -1,10 +1,15 @@
 //! A window takes studies from this computer's files, and sends nothing.
 
-use crate::platform::{BrowserFacts, NetworkFuture, Request};
+use crate::platform::{BrowserFacts, FetchError, FetchFuture, NetworkFuture, Request};
 
-/// Reads a file by its path.
-pub fn fetch(url: &str) -> NetworkFuture<Vec<u8>> {
-    let read = std::fs::read(url).map_err(|error| format!("{url}: {error}"));
+/// Reads a file of so many bytes at the most, by its path.
+pub fn fetch(url: &str, most_bytes: u64) -> FetchFuture {
+    let read = match std::fs::read(url) {
+        Ok(bytes) if bytes.len() as u64 > most_bytes => Err(FetchError::TooLarge(most_bytes)),
+        Ok(bytes) => Ok(bytes),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(FetchError::Status(404)),
+        Err(error) => Err(FetchError::Unreachable(error.to_string())),
+    };
     Box::pin(async { read })
 }
 

@@ -78,11 +78,15 @@ pub(super) fn offer_blob(file_name: &str, blob: &web_sys::Blob) -> Result<(), Js
     Ok(())
 }
 
+/// The example scene is far smaller.
+const MOST_EXAMPLE_BYTES: u64 = 64 << 20;
+
 /// Fetches the example scene, which is no part of the page's first load.
 pub fn fetch_example(on_done: impl FnOnce(Result<FileBytes, String>) + 'static) {
     wasm_bindgen_futures::spawn_local(async move {
-        let fetched = super::fetch(EXAMPLE_PATH).await;
+        let fetched = super::fetch(EXAMPLE_PATH, MOST_EXAMPLE_BYTES).await;
         let name = EXAMPLE_PATH.rsplit('/').next().unwrap_or(EXAMPLE_PATH).to_owned();
-        on_done(fetched.map(|bytes| FileBytes { name, bytes }));
+        let named = |error| format!("{EXAMPLE_PATH} {error}");
+        on_done(fetched.map(|bytes| FileBytes { name, bytes }).map_err(named));
     });
 }

@@ -22,7 +22,7 @@ pub use export::{ExportFolder, GrowingDownload};
 pub use file_tree::{pick_folder, watch_dropped_folders};
 pub use files::{download, fetch_example, pick_files};
 pub use network::{browser_facts, fetch, go_to, send_request, watch_hidden};
-pub use pictures::png_of_foreign;
+pub use pictures::{png_of_foreign, png_of_svg, show_page};
 
 /// What the boot script offers; see `web/page/boot.js`.
 #[wasm_bindgen]

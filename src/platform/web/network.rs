@@ -5,21 +5,25 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 
 use super::{describe, now_ms};
-use crate::platform::{BrowserFacts, NetworkFuture, Request};
+use crate::platform::{BrowserFacts, FetchError, FetchFuture, NetworkFuture, Request};
 
-/// Fetches a file, relative to the page or from any host that allows it.
-pub fn fetch(url: &str) -> NetworkFuture<Vec<u8>> {
+#[wasm_bindgen(module = "/web/page/network.js")]
+extern "C" {
+    #[wasm_bindgen(js_name = fetchAtMost, catch)]
+    async fn page_fetch_at_most(url: &str, most: f64) -> Result<JsValue, JsValue>;
+}
+
+/// Fetches a file of so many bytes at the most, relative to the page or from any host that allows it.
+pub fn fetch(url: &str, most_bytes: u64) -> FetchFuture {
     let url = url.to_owned();
     Box::pin(async move {
-        let failed = |error: JsValue| format!("{url} cannot be fetched: {}", describe(&error));
-        let window = web_sys::window().ok_or("the page is gone")?;
-        let response = JsFuture::from(window.fetch_with_str(&url)).await.map_err(failed)?;
-        let response: web_sys::Response = response.dyn_into().map_err(failed)?;
-        if !response.ok() {
-            return Err(format!("{url} cannot be fetched: the server answered {}", response.status()));
+        let answer = page_fetch_at_most(&url, most_bytes as f64).await;
+        let answer = answer.map_err(|error| FetchError::Unreachable(describe(&error)))?;
+        match (answer.dyn_ref::<Uint8Array>(), answer.as_f64()) {
+            (Some(bytes), _) => Ok(bytes.to_vec()),
+            (None, Some(status)) if status > 0.0 => Err(FetchError::Status(status as u16)),
+            _ => Err(FetchError::TooLarge(most_bytes)),
         }
-        let buffer = JsFuture::from(response.array_buffer().map_err(failed)?).await.map_err(failed)?;
-        Ok(Uint8Array::new(&buffer).to_vec())
     })
 }
 

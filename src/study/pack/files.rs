@@ -50,11 +50,14 @@ impl StudyFiles {
     /// A file that has come; refused if it is not what the study speaks of.
     pub fn add(&mut self, asset: &Asset, bytes: Arc<[u8]>) -> Result<(), StudyError> {
         if Sha256::of(&bytes).to_string() != asset.sha256 {
-            let reason = "the file has another content than the study says: it was changed or cut short";
-            return Err(StudyError::at(asset.path.clone(), reason));
+            return Err(StudyError::Changed(asset.path.clone()));
         }
         self.files.insert(asset.path.clone(), bytes);
         Ok(())
+    }
+
+    pub fn has(&self, asset: &Asset) -> bool {
+        self.files.contains_key(&asset.path)
     }
 
     /// What has not come yet.
@@ -66,6 +69,12 @@ impl StudyFiles {
     /// A file under the name that the researcher gave it.
     pub fn file(&self, asset: &Asset) -> Option<NamedFile> {
         Some(NamedFile { name: asset.name.clone(), bytes: self.files.get(&asset.path)?.clone() })
+    }
+
+    /// All that have come, with their SHA-256 and the researcher's names.
+    pub fn named_files(&self) -> Vec<(String, NamedFile)> {
+        let assets = self.study.assets().into_iter();
+        assets.filter_map(|asset| Some((asset.sha256.clone(), self.file(asset)?))).collect()
     }
 
     pub fn record(&self) -> StudyRecord {

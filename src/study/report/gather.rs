@@ -1,18 +1,15 @@
 //! From files to what a report is made of: results, truth, meshes and photos, found by their content.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat4};
-use serde::Deserialize;
 use thiserror::Error;
 
+use super::files::ReportFiles;
 use super::input::{ReportCondition, ReportInput, ReportSample, SampleView};
 use super::people::{participant_of, sorted_and_labelled};
-use crate::formats::NamedFile;
 use crate::mesh::Mesh;
-use crate::scene::{MeshFrame, Sha256};
-use crate::study::{Results, Study, StudyError, Truth, TruthSample};
+use crate::study::{Results, StudyError, Truth, TruthSample};
 
 /// Why there can be no report.
 #[derive(Debug, Error)]
@@ -27,105 +24,6 @@ pub enum GatherError {
     NoTruth,
     #[error("no trial can be scored: {0}")]
     NothingToScore(String),
-}
-
-/// Files of a study that were recognised by their content; what is none of them may be a mesh or a photo.
-#[derive(Debug, Default)]
-pub struct ReportFiles {
-    pub results: Vec<(String, Results)>,
-    pub truths: Vec<Truth>,
-    pub studies: Vec<Study>,
-    /// By their SHA-256.
-    assets: BTreeMap<String, NamedFile>,
-}
-
-impl ReportFiles {
-    /// Sorts files by what they say they are. A result or truth file that cannot be read is an error, other JSON is left out.
-    pub fn read(files: &[NamedFile]) -> Result<Self, GatherError> {
-        let mut found = Self::default();
-        let mut seen = BTreeSet::new();
-        for file in files {
-            let sha256 = Sha256::of(&file.bytes).to_string();
-            if !seen.insert(sha256.clone()) {
-                continue;
-            }
-            let failed = |error| GatherError::File { file: file.name.clone(), error };
-            match format_of(&file.bytes).as_deref() {
-                Some("pinpose-study-results") => {
-                    let results = Results::from_json(&file.bytes).map_err(failed)?;
-                    found.results.push((file.name.clone(), results));
-                }
-                Some("pinpose-study-truth") => {
-                    found.truths.push(Truth::from_json(&file.bytes).map_err(failed)?);
-                }
-                Some("pinpose-study") => found.studies.push(Study::from_json(&file.bytes).map_err(failed)?),
-                Some(_) => {}
-                None => {
-                    found.assets.insert(sha256, file.clone());
-                }
-            }
-        }
-        Ok(found)
-    }
-
-    fn mesh(&self, sample: &TruthSample) -> Result<Mesh, String> {
-        let file = self
-            .assets
-            .get(&sample.mesh_sha256)
-            .ok_or_else(|| format!("the mesh {} is not among the files", sample.object))?;
-        let object = self
-            .studies
-            .iter()
-            .flat_map(|study| &study.objects)
-            .find(|object| object.mesh.sha256 == sample.mesh_sha256);
-        // A mesh asks for its buffers by the names that they had before they were packed.
-        let companions: Vec<NamedFile> = object
-            .iter()
-            .flat_map(|object| &object.companions)
-            .filter_map(|asset| {
-                let bytes = self.assets.get(&asset.sha256)?.bytes.clone();
-                Some(NamedFile { name: asset.name.clone(), bytes })
-            })
-            .collect();
-        mesh_of_study(file, &companions, &sample.mesh_from_file)
-            .map_err(|error| format!("{}: {error}", sample.object))
-    }
-}
-
-/// A study's mesh in the `object` frame. `companions` are the files that it asks for, by their names.
-pub fn mesh_of_study(
-    file: &NamedFile,
-    companions: &[NamedFile],
-    mesh_from_file: &[[f64; 4]; 4],
-) -> Result<Mesh, String> {
-    let find = |asked: &str| {
-        // A study keeps its files' names without their folders.
-        let asked = asked.rsplit(['/', '\\']).next().unwrap_or(asked);
-        let found = companions.iter().find(|companion| companion.name.eq_ignore_ascii_case(asked));
-        found.map(|companion| companion.bytes.clone())
-    };
-    let mesh = crate::mesh::load(&file.name, &file.bytes, &find).map_err(|error| error.to_string())?.mesh;
-    let mesh_from_file = DMat4::from_cols_array_2d(mesh_from_file).transpose();
-    if mesh_from_file == DMat4::IDENTITY {
-        return Ok(mesh);
-    }
-    // Another matrix than these would give numbers that are none.
-    MeshFrame::checked(mesh_from_file).map_err(|error| error.to_string())?;
-    mesh.transformed(&DAffine3::from_mat4(mesh_from_file)).map_err(|error| error.to_string())
-}
-
-/// What a JSON file says it is; empty where it says nothing, `None` for other files.
-fn format_of(bytes: &[u8]) -> Option<String> {
-    #[derive(Deserialize)]
-    struct Head {
-        #[serde(default)]
-        format: String,
-    }
-    let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace())?;
-    if *first != b'{' {
-        return None;
-    }
-    Some(serde_json::from_slice::<Head>(bytes).map(|head| head.format).unwrap_or_default())
 }
 
 /// All that was gathered so far.
@@ -150,7 +48,11 @@ pub fn gather(files: &ReportFiles) -> Result<ReportInput, GatherError> {
         found.map_or_else(|| study.to_owned(), |(_, results)| results.study.title.clone())
     };
     let titles: Vec<String> = files.truths.iter().map(|truth| title_of(&truth.study)).collect();
-    let input = ReportInput { title: titles.join(" and "), ..ReportInput::default() };
+    let input = ReportInput {
+        title: titles.join(" and "),
+        remarks: files.unreadable.clone(),
+        ..ReportInput::default()
+    };
     let mut gathered = Gathered { input, samples: BTreeMap::new(), sets: BTreeMap::new() };
     for truth in &files.truths {
         gathered.take_samples(files, truth, &title_of(&truth.study));
@@ -158,7 +60,9 @@ pub fn gather(files: &ReportFiles) -> Result<ReportInput, GatherError> {
     if gathered.input.samples.is_empty() {
         return Err(GatherError::NothingToScore(gathered.input.remarks.join("; ")));
     }
-    for (file, results) in chosen(&files.results, &mut gathered.input.remarks) {
+    let chosen = chosen(&files.results, &mut gathered.input.remarks);
+    gathered.input.remarks.extend(ids_that_come_twice(&chosen));
+    for (file, results) in chosen {
         gathered.take_results(files, file, results);
     }
     if gathered.input.participants.is_empty() {
@@ -168,8 +72,26 @@ pub fn gather(files: &ReportFiles) -> Result<ReportInput, GatherError> {
     Ok(gathered.input)
 }
 
+/// Whose id comes more than once: somebody took part twice, or two people were given one id. Nobody but the researcher can tell.
+fn ids_that_come_twice(results: &[(&str, &Results)]) -> Vec<String> {
+    let mut files: BTreeMap<[&str; 2], Vec<&str>> = BTreeMap::new();
+    for (file, results) in results {
+        files.entry([&results.study.id, &results.participant.id]).or_default().push(file);
+    }
+    let remark = |([_, id], files): ([&str; 2], Vec<&str>)| {
+        let among = files.join(", ");
+        (files.len() > 1).then(|| {
+            format!("{among}: {} participations have the id {id}; each counts as a person", files.len())
+        })
+    };
+    files.into_iter().filter_map(remark).collect()
+}
+
 /// Of several files of one participation the one that got farthest.
-fn chosen<'a>(results: &'a [(String, Results)], remarks: &mut Vec<String>) -> Vec<(&'a str, &'a Results)> {
+pub(super) fn chosen<'a>(
+    results: &'a [(String, Results)],
+    remarks: &mut Vec<String>,
+) -> Vec<(&'a str, &'a Results)> {
     let mut best: BTreeMap<[&str; 3], (&str, &Results)> = BTreeMap::new();
     for (file, found) in results {
         let key = [found.started_at.as_str(), &found.study.id, &found.participant.id];
@@ -192,11 +114,9 @@ fn chosen<'a>(results: &'a [(String, Results)], remarks: &mut Vec<String>) -> Ve
 
 impl Gathered {
     fn take_samples(&mut self, files: &ReportFiles, truth: &Truth, title: &str) {
-        let mut meshes: BTreeMap<String, Result<Arc<Mesh>, String>> = BTreeMap::new();
         let several = files.truths.len() > 1;
         for sample in &truth.samples {
-            let key = format!("{} {:?}", sample.mesh_sha256, sample.mesh_from_file);
-            let mesh = meshes.entry(key).or_insert_with(|| files.mesh(sample).map(Arc::new)).clone();
+            let mesh = files.mesh_of(sample);
             let set = self.set(&truth.study, sample.set.as_deref(), several.then_some(title));
             match sample_of(files, sample, mesh, set) {
                 Ok(mut found) => {
@@ -268,7 +188,7 @@ fn sample_of(
     let truth = truth.to_pose().map_err(|error| format!("its true pose: {error}"))?;
     let symmetries = sample.symmetries.to_symmetries().ok_or("its symmetries are no transforms")?;
     let camera = sample.camera.to_intrinsics().ok();
-    let photo = files.assets.get(&sample.photo_sha256).map(|file| file.bytes.clone());
+    let photo = files.photo(&sample.photo_sha256);
     let view = camera.zip(photo).map(|(camera, photo)| SampleView { camera, photo });
     let name = format!("{} in {}", sample.object, sample.photo);
     Ok(ReportSample { label: String::new(), set, name, mesh, symmetries, truth, view })

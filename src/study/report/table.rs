@@ -80,6 +80,11 @@ impl Cell {
         number.filter(|number| number.is_finite()).map_or(Self::Missing, Self::Number)
     }
 
+    /// As it is shown to a reader.
+    pub fn shown(&self, decimals: usize) -> String {
+        self.printed(decimals, " ± ", "–")
+    }
+
     /// "12.34 ± 5.60"; the reader's `plus_minus` and `dash` differ.
     pub(super) fn printed(&self, decimals: usize, plus_minus: &str, dash: &str) -> String {
         match self {

@@ -113,6 +113,8 @@ fn latex_text(text: &str) -> String {
             '½' => out += "$\\frac{1}{2}$",
             'Δ' => out += "$\\Delta$",
             '√' => out += "$\\surd$",
+            // An empty line would end the paragraph that the table is in.
+            c if c.is_control() => out.push(' '),
             other => out.push(other),
         }
     }

@@ -6,6 +6,7 @@ mod page;
 mod practice;
 mod questionnaire;
 mod questions;
+mod rehearsal;
 mod replay;
 mod text;
 mod trial;
@@ -20,6 +21,8 @@ use crate::study::questionnaire::TlxScale;
 use crate::study::{Answer, AnswerValue, Condition, Feedback, Item, PairChoice, Questionnaire, Tool};
 
 pub use finish::{FinishView, Sending};
+pub use practice::FEEDBACK_PICTURES;
+pub use rehearsal::Rehearsal;
 pub use replay::ReplayView;
 pub use text::Pictures;
 pub use trial::TrialView;
@@ -32,9 +35,10 @@ pub enum StudyScreen<'a> {
         done: usize,
         all: usize,
     },
-    /// It cannot go on; a sentence that says why.
+    /// It cannot go on: a sentence that says why, and what the researcher needs to know.
     Problem {
         text: &'a str,
+        details: &'a str,
         can_retry: bool,
     },
     /// The link names no participant.
@@ -90,6 +94,8 @@ pub struct StudyView<'a> {
     pub page: usize,
     /// A researcher looks at it: there is a way back.
     pub is_preview: bool,
+    /// A program may take part in it, to show the report.
+    pub can_rehearse: bool,
 }
 
 /// What the participant asks for.
@@ -116,6 +122,7 @@ pub enum StudyRequest {
     Forget,
     /// A researcher has seen enough.
     LeavePreview,
+    Rehearse(Rehearsal),
     WatchTrial(usize),
     Play(bool),
     /// Milliseconds since the trial was shown.
@@ -136,6 +143,8 @@ pub struct State {
     help_is_open: bool,
     /// The next frame shows what is below.
     turn_over: bool,
+    /// The dialog of a rehearsal is open.
+    rehearsal: Option<Rehearsal>,
 }
 
 impl State {

@@ -4,7 +4,7 @@ use egui::scroll_area::ScrollAreaOutput;
 use egui::{Align, Button, Checkbox, Layout, Rect, RichText, ScrollArea, Stroke, TextEdit, Ui, Vec2};
 
 use super::{State, StudyRequest, StudyScreen, StudyView};
-use super::{finish, practice, questionnaire, questions, text};
+use super::{finish, practice, questionnaire, questions, rehearsal, text};
 use crate::ui::{study::allowed_keys, theme};
 
 /// As long as lines of text are read well.
@@ -14,7 +14,7 @@ const BUTTON: Vec2 = Vec2::new(160.0, 36.0);
 
 pub fn draw(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut Vec<StudyRequest>) {
     if view.is_preview {
-        preview_bar(ui, requests);
+        rehearsal::bar(ui, view, state, requests);
     }
     // A new screen begins at its top.
     let area = ScrollArea::vertical().id_salt(("study page", view.page)).auto_shrink(false);
@@ -51,21 +51,12 @@ fn more_below(ui: &mut Ui, shown: &ScrollAreaOutput<()>) -> bool {
     ui.put(place, Button::new("More below").corner_radius(14.0).stroke(stroke)).clicked()
 }
 
-fn preview_bar(ui: &mut Ui, requests: &mut Vec<StudyRequest>) {
-    ui.horizontal(|ui| {
-        ui.add_space(12.0);
-        let words = RichText::new("Preview: nothing is sent or kept").color(theme::warning(ui.visuals()));
-        ui.label(words);
-        if ui.button("Back to the builder").clicked() {
-            requests.push(StudyRequest::LeavePreview);
-        }
-    });
-}
-
 fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut Vec<StudyRequest>) {
     match view.screen {
         StudyScreen::Loading { done, all } => loading(ui, done, all),
-        StudyScreen::Problem { text, can_retry } => problem(ui, view, text, can_retry, requests),
+        StudyScreen::Problem { text, details, can_retry } => {
+            problem(ui, view, text, details, can_retry, requests);
+        }
         StudyScreen::AskId => ask_id(ui, state, requests),
         StudyScreen::Consent { text } => consent(ui, view, text, state, requests),
         StudyScreen::Declined => {
@@ -86,7 +77,7 @@ fn screen(ui: &mut Ui, view: &StudyView<'_>, state: &mut State, requests: &mut V
         }
         StudyScreen::Questions { items } => questions::draw(ui, "Before we start", items, state, requests),
         StudyScreen::Feedback { feedback, may_try_again } => {
-            practice::draw(ui, feedback, may_try_again, requests);
+            practice::draw(ui, view.pictures, feedback, may_try_again, requests);
         }
         StudyScreen::Begin { condition, number, count, trials } => {
             let title = if count > 1 {
@@ -123,7 +114,8 @@ pub fn heading(ui: &mut Ui, text: &str) {
 /// The button at the foot of a screen.
 pub fn primary(ui: &mut Ui, text: &str) -> bool {
     ui.add_space(12.0);
-    ui.add(theme::primary_button(text).min_size(BUTTON)).clicked()
+    // In a row its words are in its middle.
+    ui.horizontal(|ui| ui.add(theme::primary_button(text).min_size(BUTTON)).clicked()).inner
 }
 
 fn go_on(ui: &mut Ui, text: &str, requests: &mut Vec<StudyRequest>) {
@@ -158,14 +150,33 @@ fn loading(ui: &mut Ui, done: usize, all: usize) {
     }
 }
 
-fn problem(ui: &mut Ui, view: &StudyView<'_>, text: &str, can_retry: bool, requests: &mut Vec<StudyRequest>) {
+fn problem(
+    ui: &mut Ui,
+    view: &StudyView<'_>,
+    text: &str,
+    details: &str,
+    can_retry: bool,
+    requests: &mut Vec<StudyRequest>,
+) {
     heading(ui, "The study cannot go on here");
     ui.label(text);
-    if !view.contact.is_empty() {
-        ui.label(format!("If this does not help, please write to {}.", view.contact));
-    }
+    let whom = match view.contact {
+        "" => "whoever invited you",
+        contact => contact,
+    };
+    ui.label(format!("If this does not help, please write to {whom}."));
     if can_retry && primary(ui, "Try again") {
         requests.push(StudyRequest::Retry);
+    }
+    if !details.is_empty() {
+        ui.add_space(16.0);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("For the researcher:").small().weak());
+            if ui.small_button("Copy").clicked() {
+                ui.ctx().copy_text(details.to_owned());
+            }
+        });
+        ui.label(RichText::new(details).small().weak());
     }
 }
 

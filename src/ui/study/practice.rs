@@ -2,16 +2,29 @@
 
 use egui::{Button, Grid, RichText, Ui, Vec2};
 
-use super::StudyRequest;
+use super::{Pictures, StudyRequest};
 use crate::study::Feedback;
 use crate::ui::theme;
 
-pub fn draw(ui: &mut Ui, feedback: &Feedback, may_try_again: bool, requests: &mut Vec<StudyRequest>) {
+/// What the pictures of a practice pose are called: the participant's, the true one, and both.
+pub const FEEDBACK_PICTURES: [&str; 3] =
+    ["feedback: yours", "feedback: correct", "feedback: where they differ"];
+
+const CAPTIONS: [&str; 3] = ["Yours", "Correct", "Green: only yours. Pink: only correct"];
+
+pub fn draw(
+    ui: &mut Ui,
+    shown: &Pictures,
+    feedback: &Feedback,
+    may_try_again: bool,
+    requests: &mut Vec<StudyRequest>,
+) {
     let (title, color) = match feedback.is_good {
         true => ("Well done", theme::good(ui.visuals())),
         false => ("Not quite there yet", theme::warning(ui.visuals())),
     };
     ui.label(RichText::new(title).heading().strong().color(color));
+    pictures(ui, shown);
     Grid::new("practice errors").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {
         let mut row = |what: &str, value: String| {
             ui.label(what);
@@ -44,4 +57,26 @@ pub fn draw(ui: &mut Ui, feedback: &Feedback, may_try_again: bool, requests: &mu
             requests.push(StudyRequest::GoOn);
         }
     });
+}
+
+/// Side by side; none where they could not be drawn.
+fn pictures(ui: &mut Ui, shown: &Pictures) {
+    const GAP: f32 = 8.0;
+    let width = (ui.available_width() - 2.0 * GAP) / 3.0;
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        for (name, caption) in FEEDBACK_PICTURES.iter().zip(CAPTIONS) {
+            let Some(texture) = shown.get(name) else { continue };
+            let size = texture.size_vec2();
+            ui.vertical(|ui| {
+                ui.set_width(width);
+                let image =
+                    egui::Image::new((texture.id(), size * (width / size.x.max(1.0)))).corner_radius(4.0);
+                let response = ui.add(image);
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, caption));
+                ui.label(RichText::new(caption).small().weak());
+            });
+        }
+    });
+    ui.add_space(4.0);
 }

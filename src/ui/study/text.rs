@@ -27,6 +27,18 @@ impl Pictures {
     }
 }
 
+impl Pictures {
+    pub fn forget(&mut self, names: &[&str]) {
+        names.iter().for_each(|name| {
+            self.0.remove(*name);
+        });
+    }
+
+    pub fn get(&self, name: &str) -> Option<&TextureHandle> {
+        self.0.get(name)
+    }
+}
+
 pub fn draw(ui: &mut Ui, markdown: &str, pictures: &Pictures) {
     for block in blocks(markdown) {
         match block {

@@ -3,11 +3,14 @@
 mod questions;
 mod samples;
 mod settings;
+mod texts;
 
-use egui::{Button, Context, Id, Modal, RichText, ScrollArea, Ui, Vec2};
+use std::sync::Arc;
 
-use super::{Asked, theme};
-use crate::platform;
+use egui::{Button, Context, RichText, ScrollArea, Ui, Vec2};
+
+use super::{Asked, once, theme};
+use crate::platform::{self, ExportFolder};
 use crate::session::Session;
 use crate::study::check::Finding;
 use crate::study::pack::Draft;
@@ -24,12 +27,16 @@ pub enum StudyBuild {
     Check(Box<Draft>),
     Preview(Box<Draft>),
     Export(Box<Draft>),
+    /// Into a folder that the researcher picks.
+    IntoFolder(Box<Draft>),
 }
 
 impl StudyBuild {
     pub fn draft(&self) -> &Draft {
         match self {
-            Self::Check(draft) | Self::Preview(draft) | Self::Export(draft) => draft,
+            Self::Check(draft) | Self::Preview(draft) | Self::Export(draft) | Self::IntoFolder(draft) => {
+                draft
+            }
         }
     }
 }
@@ -82,6 +89,18 @@ impl State {
     pub fn is_open(&self) -> bool {
         self.is_open
     }
+
+    /// Opens with a study that was exported before. Its scene has to be the open one.
+    pub fn show_draft(&mut self, draft: Draft) {
+        *self = Self { is_open: true, page: Page::default(), draft: Some(draft) };
+    }
+
+    /// Adds a picture for the texts; one of the same name is replaced.
+    pub fn add_picture(&mut self, name: &str, bytes: Arc<[u8]>) {
+        let Some(draft) = &mut self.draft else { return };
+        draft.pictures.retain(|(other, _)| other != name);
+        draft.pictures.push((name.to_owned(), bytes));
+    }
 }
 
 /// A draft with every object of every photo in it, and its settings as they were last.
@@ -133,7 +152,7 @@ pub fn draw(
     }
     let mut draft = draft_of(session, state.draft.take());
     let before = draft.study.clone();
-    let modal = Modal::new(Id::unique("study builder")).frame(theme::dialog_frame(ctx)).show(ctx, |ui| {
+    let modal = once::modal(ctx, "study builder", theme::dialog_frame(ctx), |ui| {
         let room = ui.ctx().content_rect().size() - Vec2::splat(64.0);
         ui.set_min_size(SIZE.min(room));
         ui.set_max_size(SIZE.min(room));
@@ -188,7 +207,7 @@ fn page(
     ui.spacing_mut().item_spacing.y = 8.0;
     match page {
         Page::Samples => samples::draw(ui, session, draft),
-        Page::Texts => settings::texts(ui, &mut draft.study),
+        Page::Texts => texts::draw(ui, draft, asked),
         Page::Tools => settings::tools(ui, &mut draft.study),
         Page::Protocol => settings::protocol(ui, &mut draft.study),
         Page::Questions => questions::draw(ui, &mut draft.study),
@@ -226,6 +245,11 @@ fn check(ui: &mut Ui, view: Option<&BuilderView<'_>>, draft: &Draft, asked: &mut
         let boxed = || Box::new(draft.clone());
         if ui.add_enabled(is_usable, theme::primary_button("Export study").min_size(size)).clicked() {
             asked.study_build = Some(StudyBuild::Export(boxed()));
+        }
+        if ExportFolder::can_be_picked()
+            && ui.add_enabled(is_usable, Button::new("Into a folder…").min_size(size)).clicked()
+        {
+            asked.study_build = Some(StudyBuild::IntoFolder(boxed()));
         }
         if ui.add_enabled(is_usable, Button::new("Preview").min_size(size)).clicked() {
             asked.study_build = Some(StudyBuild::Preview(boxed()));

@@ -20,22 +20,6 @@ const TOOLS: [(Tool, &str, &str); 10] = [
     (Tool::Undo, "Undo", "Undo, redo and starting over"),
 ];
 
-pub fn texts(ui: &mut Ui, study: &mut Study) {
-    let hint = "Markdown: # headings, **bold**, *italic*, - lists, [links](https://…)";
-    ui.label(RichText::new(hint).weak());
-    let texts = &mut study.texts;
-    for (title, text, hint) in [
-        ("Consent", &mut texts.consent, "Asked to be agreed to; empty: nothing is asked"),
-        ("Instructions", &mut texts.instructions, "The allowed mouse gestures and keys are shown below them"),
-        ("Thanks", &mut texts.thanks, "On the last screen"),
-    ] {
-        ui.label(RichText::new(title).strong());
-        let edit = TextEdit::multiline(text).desired_rows(6).desired_width(f32::INFINITY).hint_text(hint);
-        let field = ui.add(edit);
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, title));
-    }
-}
-
 pub fn tools(ui: &mut Ui, study: &mut Study) {
     let mut removed = None;
     let is_only = study.conditions.len() == 1;

@@ -10,7 +10,7 @@ mod svg;
 mod tuples;
 
 pub use drawing::{Anchor, Drawing, Shape, Stroke, Text};
-pub use svg::svg;
+pub use svg::{PNG_SCALE, svg};
 pub(super) use tuples::tuple_figure;
 pub use tuples::{TupleJob, TuplePictures};
 

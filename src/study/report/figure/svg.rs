@@ -10,6 +10,9 @@ use crate::study::report::table_text::html_text;
 /// What a reader's machine has: the metric twins of Helvetica.
 const FONTS: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 
+/// Of a figure as PNG, pixels for each of its units: 192 dots an inch.
+pub const PNG_SCALE: f64 = 2.0;
+
 /// A document of its own, on white.
 pub fn svg(drawing: &Drawing, title: &str) -> String {
     let (width, height) = (number(drawing.width), number(drawing.height));

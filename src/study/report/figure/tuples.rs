@@ -4,20 +4,12 @@ use std::sync::Arc;
 
 use super::drawing::{Anchor, Drawing, Shape, Text};
 use super::{Figure, figure};
-use crate::math::Pose;
-use crate::photo::{Pixels, decode, png_rgba};
-use crate::raster::{Mask, PixelRegion, RasterItem, rasterize};
-use crate::scene::{Rgb, object_color, reference_color};
-use crate::study::report::{Analysis, Measure, ReportProgress, ReportSample, Rows, TrialErrors};
+use crate::photo::{decode, png_rgba};
+use crate::study::comparison::comparison;
+use crate::study::report::{Analysis, Measure, ReportProgress, Rows, TrialErrors};
 
 /// Of a picture on the page, in its own pixels: finer than it is printed. What has fewer in the photo keeps them.
 const MOST_WIDTH: u32 = 320;
-/// How much of the photo an object's colour covers.
-const COVER: f64 = 0.5;
-/// And where the silhouettes differ.
-const COVER_XOR: f64 = 0.9;
-/// Free room around the object, as a part of its box.
-const MARGIN: f64 = 0.35;
 const CELL_WIDTH: f64 = 186.0;
 const LABEL_SIZE: f64 = 11.0;
 
@@ -92,27 +84,9 @@ fn pictures(analysis: &Analysis, row: &TrialErrors) -> Option<TuplePictures> {
     let sample = analysis.samples.get(row.sample)?;
     let view = sample.view.as_ref()?;
     let photo = decode(&view.photo).ok()?.pixels;
-    if (photo.width, photo.height) != (view.camera.width, view.camera.height) {
-        return None;
-    }
     let participant = analysis.participants.get(row.participant)?;
     let pose = participant.trials.get(row.trial)?.pose;
-    let [annotated, truth] = [&pose, &sample.truth].map(|pose| silhouette(sample, pose));
-    let (annotated, truth) = (annotated?, truth?);
-    let region = region_around(&photo, &[&annotated, &truth]);
-    let (lime, magenta) = (object_color(0), reference_color());
-    let difference = |x: u32, y: u32| match (annotated.get(x, y), truth.get(x, y)) {
-        (true, false) => Some((lime, COVER_XOR)),
-        (false, true) => Some((magenta, COVER_XOR)),
-        (true, true) => Some((Rgb([255, 255, 255]), COVER)),
-        (false, false) => None,
-    };
-    let drawn = [
-        cut(&photo, region, |_, _| None)?,
-        cut(&photo, region, |x, y| annotated.get(x, y).then_some((lime, COVER)))?,
-        cut(&photo, region, |x, y| truth.get(x, y).then_some((magenta, COVER)))?,
-        cut(&photo, region, difference)?,
-    ];
+    let drawn = comparison(&photo, &view.camera, &sample.mesh, [&pose, &sample.truth], MOST_WIDTH)?;
     let size = [drawn[0].width, drawn[0].height];
     let [a, b, c, d] = drawn.map(|pixels| png_rgba(&pixels).map(Arc::<[u8]>::from));
     let error = |measure: Measure| row.errors.get(measure);
@@ -126,88 +100,6 @@ fn pictures(analysis: &Analysis, row: &TrialErrors) -> Option<TuplePictures> {
             format!("ADD {:.1} mm ({})", error(Measure::Add), participant.label),
         ],
     })
-}
-
-fn silhouette(sample: &ReportSample, camera_from_object: &Pose) -> Option<Mask> {
-    let camera = &sample.view.as_ref()?.camera;
-    let item = RasterItem { mesh: &sample.mesh, camera_from_object: *camera_from_object, id: 1 };
-    Some(rasterize(camera, &[item], PixelRegion::of_camera(camera)).mask(1))
-}
-
-/// A part of the photo in its own proportions around the masks; all of it where they are empty.
-fn region_around(photo: &Pixels, masks: &[&Mask]) -> PixelRegion {
-    let whole = PixelRegion { x0: 0, y0: 0, width: photo.width, height: photo.height };
-    let boxes: Vec<PixelRegion> = masks.iter().filter_map(|mask| mask.bounding_box()).collect();
-    let Some(first) = boxes.first() else { return whole };
-    let (mut low, mut high) = ([first.x0, first.y0], [first.x0, first.y0]);
-    for found in &boxes {
-        low = [low[0].min(found.x0), low[1].min(found.y0)];
-        high = [high[0].max(found.x0 + found.width as i32), high[1].max(found.y0 + found.height as i32)];
-    }
-    let part = [0, 1].map(|axis| {
-        let side = f64::from(if axis == 0 { photo.width } else { photo.height });
-        f64::from(high[axis] - low[axis]) * (1.0 + 2.0 * MARGIN) / side
-    });
-    let part = part[0].max(part[1]).min(1.0);
-    let side = |whole: u32| ((f64::from(whole) * part).round() as u32).clamp(1, whole);
-    let (width, height) = (side(photo.width), side(photo.height));
-    let start = |axis: usize, side: u32, whole: u32| {
-        ((low[axis] + high[axis] - side as i32) / 2).clamp(0, (whole - side) as i32)
-    };
-    PixelRegion { x0: start(0, width, photo.width), y0: start(1, height, photo.height), width, height }
-}
-
-/// The region of the photo with a colour over it, scaled to the size of a picture: pixels of it are the means of the photo's
-/// beneath them.
-fn cut(
-    photo: &Pixels,
-    region: PixelRegion,
-    color: impl Fn(u32, u32) -> Option<(Rgb, f64)>,
-) -> Option<Pixels> {
-    let width = region.width.clamp(1, MOST_WIDTH);
-    let height = (u64::from(width) * u64::from(region.height)).div_ceil(u64::from(region.width.max(1)));
-    let height = u32::try_from(height).ok()?.clamp(1, 4 * MOST_WIDTH);
-    let mut rgba = Vec::with_capacity(4 * width as usize * height as usize);
-    for y in 0..height {
-        for x in 0..width {
-            let pixel = mean_pixel(photo, region, [x, y], [width, height], &color)?;
-            rgba.extend(pixel);
-        }
-    }
-    Some(Pixels { width, height, rgba })
-}
-
-fn mean_pixel(
-    photo: &Pixels,
-    region: PixelRegion,
-    place: [u32; 2],
-    size: [u32; 2],
-    color: &impl Fn(u32, u32) -> Option<(Rgb, f64)>,
-) -> Option<[u8; 4]> {
-    // The photo's pixels from the place's start to its end, one at least.
-    let span = |at: u32, of: u32, length: u32, start: i32| {
-        let first = u64::from(at) * u64::from(length) / u64::from(of);
-        let last = (u64::from(at + 1) * u64::from(length)).div_ceil(u64::from(of));
-        let start = start.unsigned_abs();
-        start + first as u32..start + (last.max(first + 1) as u32).min(length)
-    };
-    let mut sum = [0.0; 3];
-    let mut count = 0.0;
-    for y in span(place[1], size[1], region.height, region.y0) {
-        for x in span(place[0], size[0], region.width, region.x0) {
-            let at = 4 * (y as usize * photo.width as usize + x as usize);
-            let own = photo.rgba.get(at..at + 3)?;
-            let over = color(x, y);
-            for (channel, total) in sum.iter_mut().enumerate() {
-                let own = f64::from(own[channel]);
-                *total +=
-                    over.map_or(own, |(Rgb(over), cover)| own + (f64::from(over[channel]) - own) * cover);
-            }
-            count += 1.0;
-        }
-    }
-    let [r, g, b] = sum.map(|total| (total / f64::max(count, 1.0)).round() as u8);
-    Some([r, g, b, 255])
 }
 
 /// A figure of a set's rows; `None` where it has none.

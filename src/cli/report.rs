@@ -1,7 +1,5 @@
 //! `pinpose report RESULTS… --truth T --out DIR`: a paper's tables and figures from the result files of a study.
 
-mod png;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -9,8 +7,10 @@ use serde_json::{Map, Value, json};
 
 use super::{Failure, Outcome, open};
 use crate::formats::NamedFile;
+use crate::platform;
 use crate::study::report::{
-    Cell, Report, ReportFiles, ReportJob, ReportOptions, ReportProgress, Table, gather,
+    Cell, Figure, GatherError, PNG_SCALE, Report, ReportFiles, ReportJob, ReportOptions, ReportProgress,
+    Table, gather, svg,
 };
 
 /// Who made it, for the page's foot.
@@ -35,9 +35,10 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
     for truth in &options.truth {
         files.extend(read_truth(truth)?);
     }
-    let input = ReportFiles::read(&files)
-        .and_then(|files| gather(&files))
-        .map_err(|error| Failure::Input(vec![error.to_string()]))?;
+    let failed = |error: GatherError| Failure::Input(vec![error.to_string()]);
+    let mut found = ReportFiles::read(&files).map_err(failed)?;
+    while found.read_next_mesh() {}
+    let input = gather(&found).map_err(failed)?;
     input.remarks.iter().for_each(|remark| eprintln!("pinpose: {remark}"));
     let mut job = ReportJob::new(input, options.report, options.with_pictures);
     let report = loop {
@@ -71,8 +72,7 @@ fn write(report: &Report, options: &Options) -> Result<Vec<String>, Failure> {
     let mut files: Vec<(String, Vec<u8>)> =
         report.files(GENERATOR).into_iter().map(|(path, text)| (path, text.into_bytes())).collect();
     if options.with_png {
-        let drawn = png::figures(&report.figures).map_err(|error| Failure::Input(vec![error]))?;
-        files.extend(drawn);
+        files.extend(pictures(&report.figures).map_err(|error| Failure::Input(vec![error]))?);
     }
     for (path, bytes) in &files {
         let path = options.out.join(path);
@@ -81,6 +81,17 @@ fn write(report: &Report, options: &Options) -> Result<Vec<String>, Failure> {
             .map_err(|error| Failure::Input(vec![format!("{}: {error}", path.display())]))?;
     }
     Ok(files.into_iter().map(|(path, _)| path).collect())
+}
+
+/// Each figure as PNG: paths and contents.
+fn pictures(figures: &[Figure]) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let drawn = |figure: &Figure| {
+        let path = format!("figures/{}.png", figure.name);
+        let svg = svg(&figure.drawing, &figure.title);
+        let png = pollster::block_on(platform::png_of_svg(svg, PNG_SCALE));
+        png.map(|bytes| (path.clone(), bytes)).map_err(|error| format!("{path}: {error}"))
+    };
+    figures.iter().map(drawn).collect()
 }
 
 fn json_of(report: &Report, written: &[String]) -> Value {
