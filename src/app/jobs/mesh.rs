@@ -16,7 +16,7 @@ use crate::scene::MeshAsset;
 const NO_TEXTURE: u32 = u32::MAX;
 
 pub(super) fn write_mesh(asset: &MeshAsset, warnings: &[String]) -> Vec<u8> {
-    let mut writer = Writer::default();
+    let mut writer = Writer::for_bytes(asset.memory_bytes());
     writer.bytes(asset.sha256.to_string().as_bytes());
     let data = asset.mesh.data();
     write_data(&mut writer, data, data.paint.as_ref());

@@ -19,7 +19,7 @@ pub fn request(asset: &MeshAsset) -> NamedFile {
         paint.textures.fill(blank);
         paint
     });
-    let mut writer = Writer::default();
+    let mut writer = Writer::for_bytes(asset.memory_bytes());
     write_data(&mut writer, data, paint.as_ref());
     NamedFile { name: asset.file_name.clone(), bytes: writer.finish().into() }
 }

@@ -92,19 +92,24 @@ pub struct Jobs {
     next_id: u64,
     waiting: VecDeque<(u64, Job)>,
     sent: HashMap<u64, Job>,
+    /// Meshes whose rest is asked for once a frame has shown them.
+    just_come: Vec<Arc<MeshAsset>>,
     /// Meshes that are shown, and whose rest follows.
     unfinished: HashMap<u64, Arc<MeshAsset>>,
+    ctx: egui::Context,
 }
 
 impl Jobs {
     pub fn new(ctx: &egui::Context) -> Self {
-        let ctx = ctx.clone();
+        let waker = ctx.clone();
         Self {
-            background: Background::new(run_job, move || ctx.request_repaint()),
+            background: Background::new(run_job, move || waker.request_repaint()),
             next_id: 0,
             waiting: VecDeque::new(),
             sent: HashMap::new(),
+            just_come: Vec::new(),
             unfinished: HashMap::new(),
+            ctx: ctx.clone(),
         }
     }
 
@@ -146,6 +151,9 @@ impl Jobs {
 
     /// What has come back since the last call; an error is a sentence without the file's name.
     pub fn poll(&mut self) -> Vec<(u64, NamedFile, Result<Done, String>)> {
+        for mesh in std::mem::take(&mut self.just_come) {
+            self.ask_for_rest(mesh);
+        }
         let replies = self.background.poll().into_iter();
         let known = replies.filter_map(|(id, reply)| Some((id, self.sent.remove(&id)?, reply)));
         let all: Vec<_> = known
@@ -159,8 +167,11 @@ impl Jobs {
             .collect();
         let done = all.into_iter().filter_map(|(id, file, done)| {
             let done = self.take_rest(id, done)?;
-            if let Ok(Done::Mesh(mesh, _)) = &done {
-                self.ask_for_rest(mesh);
+            if let Ok(Done::Mesh(mesh, _)) = &done
+                && mesh.search_tree.is_awaited()
+            {
+                self.just_come.push(mesh.clone());
+                self.ctx.request_repaint();
             }
             Some((id, file, done))
         });
@@ -171,14 +182,12 @@ impl Jobs {
 
     /// Is the rest of a mesh that is shown still on its way?
     pub fn is_finishing_mesh(&self) -> bool {
-        !self.unfinished.is_empty()
+        !self.just_come.is_empty() || !self.unfinished.is_empty()
     }
 
-    fn ask_for_rest(&mut self, mesh: &Arc<MeshAsset>) {
-        if mesh.search_tree.is_awaited() {
-            let job = self.submit(JobKind::MeshRest, mesh_rest::request(mesh), &[], Urgency::Next);
-            self.unfinished.insert(job, mesh.clone());
-        }
+    fn ask_for_rest(&mut self, mesh: Arc<MeshAsset>) {
+        let job = self.submit(JobKind::MeshRest, mesh_rest::request(&mesh), &[], Urgency::Next);
+        self.unfinished.insert(job, mesh);
     }
 
     /// Gives a mesh its rest; gives back what is none.
@@ -198,9 +207,10 @@ impl Jobs {
 }
 
 fn write_request(kind: JobKind, file: &NamedFile, companions: &[NamedFile]) -> Vec<u8> {
-    let mut request = Writer::default();
+    let all = || std::iter::once(file).chain(companions);
+    let mut request = Writer::for_bytes(all().map(|file| file.name.len() + file.bytes.len() + 32).sum());
     request.byte(kind.code());
-    for NamedFile { name, bytes } in std::iter::once(file).chain(companions) {
+    for NamedFile { name, bytes } in all() {
         request.byte(1);
         request.bytes(name.as_bytes());
         request.bytes(bytes);
@@ -433,7 +443,7 @@ mod tests {
         assert!(asset.tree().is_none() && asset.drawn.is_fresh());
         let request = mesh_rest::request(&asset);
         let mut jobs = Jobs::new(&egui::Context::default());
-        jobs.ask_for_rest(&asset);
+        jobs.ask_for_rest(asset.clone());
         assert!(jobs.is_finishing_mesh());
         let rest = run(JobKind::MeshRest, &request, &[]);
         let (job, _) = jobs.unfinished.iter().next().unwrap();
@@ -451,7 +461,7 @@ mod tests {
             panic!("no mesh")
         };
         let mut jobs = Jobs::new(&egui::Context::default());
-        jobs.ask_for_rest(&asset);
+        jobs.ask_for_rest(asset.clone());
         let (job, _) = jobs.unfinished.iter().next().unwrap();
         assert!(jobs.take_rest(*job, Err("it crashed".to_owned())).is_none());
         assert!(asset.tree().is_some());

@@ -8,6 +8,11 @@ pub struct Writer {
 }
 
 impl Writer {
+    /// With room for so many bytes: growing moves what is there, and a mesh is tens of megabytes.
+    pub fn for_bytes(count: usize) -> Self {
+        Self { bytes: Vec::with_capacity(count) }
+    }
+
     pub fn byte(&mut self, byte: u8) {
         self.bytes.push(byte);
     }

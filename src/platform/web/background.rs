@@ -38,8 +38,8 @@ impl Background {
     }
 
     pub fn submit(&mut self, id: u64, request: Vec<u8>) {
-        self.open.push((id, request.clone()));
         self.send(id, &request);
+        self.open.push((id, request));
     }
 
     /// The replies that have come. An error is a crash of that one job.
