@@ -16,9 +16,9 @@ use crate::scene::MeshAsset;
 const NO_TEXTURE: u32 = u32::MAX;
 
 pub(super) fn write_mesh(asset: &MeshAsset, warnings: &[String]) -> Vec<u8> {
-    let mut writer = Writer::for_bytes(asset.memory_bytes());
-    writer.bytes(asset.sha256.to_string().as_bytes());
     let data = asset.mesh.data();
+    let mut writer = Writer::for_bytes(bytes_of(data));
+    writer.bytes(asset.sha256.to_string().as_bytes());
     write_data(&mut writer, data, data.paint.as_ref());
     writer.bytes(warnings.join("\n").as_bytes());
     let drawn = DrawnMesh::ahead_of(&asset.mesh);
@@ -28,6 +28,13 @@ pub(super) fn write_mesh(asset: &MeshAsset, warnings: &[String]) -> Vec<u8> {
         asset.tree().into_iter().for_each(|tree| write_tree(&mut writer, tree));
     }
     writer.finish()
+}
+
+/// What a mesh without paint takes, about.
+pub(super) fn bytes_of(data: &MeshData) -> usize {
+    let has = |is_there: bool, bytes: usize| if is_there { bytes } else { 0 };
+    let per_vertex = 12 + has(data.normals.is_some(), 12) + has(data.colors.is_some(), 4);
+    per_vertex * data.positions_mm.len() + 12 * data.triangles.len() + 1024
 }
 
 pub(super) fn write_data(writer: &mut Writer, data: &MeshData, paint: Option<&Paint>) {

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::mesh::{read_data, read_shading, write_data, write_shading};
+use super::mesh::{bytes_of, read_data, read_shading, write_data, write_shading};
 use super::wire::{Reader, Writer};
 use crate::formats::NamedFile;
 use crate::mesh::{Bvh, Mesh, MeshData, ShadingMesh, shading_vertices};
@@ -19,7 +19,7 @@ pub fn request(asset: &MeshAsset) -> NamedFile {
         paint.textures.fill(blank);
         paint
     });
-    let mut writer = Writer::for_bytes(asset.memory_bytes());
+    let mut writer = Writer::for_bytes(bytes_of(data));
     write_data(&mut writer, data, paint.as_ref());
     NamedFile { name: asset.file_name.clone(), bytes: writer.finish().into() }
 }

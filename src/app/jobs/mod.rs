@@ -437,7 +437,7 @@ mod tests {
 
     #[test]
     fn a_large_mesh_comes_without_its_tree_which_follows() {
-        let ply = crate::mesh::write_ply(&crate::mesh::test_shapes::sphere(100.0, 300, 300));
+        let ply = crate::mesh::write_ply(&crate::mesh::test_shapes::sphere(100.0, 400, 800));
         let ply = file("ball.ply", &ply);
         let Ok(Done::Mesh(asset, _)) = run(JobKind::Mesh, &ply, &[]) else { panic!("no mesh") };
         assert!(asset.tree().is_none() && asset.drawn.is_fresh());
@@ -456,11 +456,12 @@ mod tests {
 
     #[test]
     fn a_large_mesh_whose_rest_fails_makes_it_itself() {
-        let ply = crate::mesh::write_ply(&crate::mesh::test_shapes::sphere(100.0, 300, 300));
+        let ply = crate::mesh::write_ply(&crate::mesh::test_shapes::sphere(100.0, 400, 800));
         let Ok(Done::Mesh(asset, _)) = run(JobKind::Mesh, &file("ball.ply", &ply), &[]) else {
             panic!("no mesh")
         };
         let mut jobs = Jobs::new(&egui::Context::default());
+        assert!(asset.tree().is_none());
         jobs.ask_for_rest(asset.clone());
         let (job, _) = jobs.unfinished.iter().next().unwrap();
         assert!(jobs.take_rest(*job, Err("it crashed".to_owned())).is_none());
