@@ -158,17 +158,30 @@ impl Page {
 
     /// Drops files onto the canvas, as if they were dragged in from a folder.
     pub fn drop_files(&mut self, files: &[File]) -> anyhow::Result<()> {
-        let files = files_expression(files);
-        self.eval(&format!(
-            "(() => {{
-                const dataTransfer = new DataTransfer();
-                for (const file of {files}) dataTransfer.items.add(file);
+        self.hand_over(files)?;
+        self.drop_handed_over()
+    }
+
+    /// Gives the page files to be dropped later: a person's browser has them already, so their way here is no cost of it.
+    pub fn hand_over(&mut self, files: &[File]) -> anyhow::Result<()> {
+        self.eval("window.handedOver = new DataTransfer(); 1")?;
+        for file in files {
+            let file = files_expression(std::slice::from_ref(file));
+            self.eval(&format!("{file}.forEach((file) => window.handedOver.items.add(file))"))?;
+        }
+        self.next_frame()
+    }
+
+    pub fn drop_handed_over(&mut self) -> anyhow::Result<()> {
+        self.eval(
+            "(() => {
+                const dataTransfer = window.handedOver;
                 const canvas = document.querySelector('canvas');
-                for (const type of ['dragenter', 'dragover', 'drop']) {{
-                    canvas.dispatchEvent(new DragEvent(type, {{ dataTransfer, bubbles: true, cancelable: true }}));
-                }}
-            }})()"
-        ))?;
+                for (const type of ['dragenter', 'dragover', 'drop']) {
+                    canvas.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+                }
+            })()",
+        )?;
         self.next_frame()
     }
 

@@ -95,6 +95,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "storage-damaged", storage::damaged).long(),
     Flow::on(WEBGL, "study", study::short),
     Flow::on(WEBGL, "study-ten", study::long).long(),
+    Flow::on(WEBGL, "study-hundred", study::of_a_hundred).long(),
     Flow::on(WEBGPU, "study-webgpu", study::short).long(),
     Flow::on(WEBGL, "study-startup", study::link_to_trial),
     Flow::on(WEBGL, "study-tabs", study::two_tabs),

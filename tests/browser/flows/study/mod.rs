@@ -21,6 +21,7 @@ use crate::page::Page;
 use made::{Made, ensure_no_truth, files_beneath};
 
 pub use links::bad_links;
+pub use report::of_a_hundred;
 pub use startup::link_to_trial;
 pub use tabs::two_tabs;
 
