@@ -22,8 +22,10 @@ use serde_json::Value;
 
 use crate::chance::Chance;
 use crate::numbers::{cpu_secs, median, percent, quantile};
+use crate::snap::{deviations, print_coverage};
 
-const ROUNDS: usize = 2;
+/// A median of fewer runs is chance by some millimetres.
+const ROUNDS: usize = 8;
 const SMALLEST_VISIBLE_PART: f64 = 0.6;
 
 struct Object {
@@ -65,7 +67,11 @@ pub fn real() {
 fn real_part(&(name, half): &(&str, Option<usize>)) {
     let folder = name.split(' ').next().unwrap_or(name);
     match frames(folder, half) {
-        Ok(frames) => report(name, &snap_all(&frames)),
+        Ok(frames) => {
+            let (runs, deviations) = snap_all(&frames);
+            report(name, &runs);
+            print_coverage(&deviations);
+        }
         Err(reason) => println!("{name}: left out, {reason}"),
     }
 }
@@ -121,23 +127,25 @@ pub fn disturbed(
     (Pose::rotation_about(center, turn) * *truth).translated(place - center)
 }
 
-fn snap_all(frames: &[Frame]) -> Vec<Run> {
+fn snap_all(frames: &[Frame]) -> (Vec<Run>, Vec<[f64; 6]>) {
     let mut chance = Chance(1);
-    let mut runs = Vec::new();
+    let (mut runs, mut deviations) = (Vec::new(), Vec::new());
     for frame in frames {
         for (number, object) in frame.objects.iter().enumerate() {
             if visible_part(frame, number) < SMALLEST_VISIBLE_PART {
                 continue;
             }
             for _ in 0..ROUNDS {
-                runs.push(snap_one(&mut chance, frame, object));
+                let (run, deviation) = snap_one(&mut chance, frame, object);
+                runs.push(run);
+                deviations.extend(deviation);
             }
         }
     }
-    runs
+    (runs, deviations)
 }
 
-fn snap_one(chance: &mut Chance, frame: &Frame, object: &Object) -> Run {
+fn snap_one(chance: &mut Chance, frame: &Frame, object: &Object) -> (Run, Option<[f64; 6]>) {
     let center = object.model.center_mm();
     let start = disturbed(chance, &frame.camera, &object.truth, center, (5.0, 10.0, 0.03));
     let others = frame.objects.iter().filter(|other| other.name != object.name);
@@ -150,14 +158,17 @@ fn snap_one(chance: &mut Chance, frame: &Frame, object: &Object) -> Run {
         PoseError::between(pose, &object.truth, &object.mesh, &Symmetries::default(), usize::MAX)
     };
     let found = outcome.camera_from_object;
-    Run {
+    let deviation =
+        outcome.covariance.map(|covariance| deviations(&covariance, &found, &object.truth, center));
+    let run = Run {
         object: object.name.clone(),
         before: error(&start),
         after: error(&found),
         depth_mm: found.transform_point(center).z - object.truth.transform_point(center).z,
         verdict: outcome.verdict,
         ms,
-    }
+    };
+    (run, deviation)
 }
 
 pub fn data() -> PathBuf {

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pinpose::math::Intrinsics;
+use pinpose::math::{Intrinsics, Pose, rotation_vector_from_rotation};
 use pinpose::mesh::{Mesh, load, no_companions};
 use pinpose::metrics::PoseError;
 use pinpose::scene::Symmetries;
@@ -21,7 +21,7 @@ use crate::real::{Run, data, disturbed, header, report};
 const DISTANCE_MM: f64 = 800.0;
 const DIAMETER_MM: f64 = 140.0;
 /// Starts for each mesh; each with a photo of its own.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 30;
 
 struct Object {
     name: String,
@@ -48,11 +48,11 @@ fn camera() -> Intrinsics {
 fn snap_all(name: &str, objects: &[Object], off: (f64, f64, f64), reach: SnapReach) {
     let mut chance = Chance(2);
     let mut runs = Vec::new();
-    let mut distances = Vec::new();
+    let mut deviations = Vec::new();
     for object in objects {
         for _ in 0..ROUNDS {
-            let (run, distance) = snap_one(&mut chance, object, off, reach);
-            distances.extend(distance);
+            let (run, deviation) = snap_one(&mut chance, object, off, reach);
+            deviations.extend(deviation);
             runs.push(run);
         }
     }
@@ -67,12 +67,25 @@ fn snap_all(name: &str, objects: &[Object], off: (f64, f64, f64), reach: SnapRea
         mean(&found),
         quantile(&runs.iter().map(|run| run.after.rotation_rad.to_degrees()).collect::<Vec<_>>(), 0.9),
     );
-    // The quantiles of χ² with six degrees of freedom for one and two standard deviations' worth of chance.
+    print_coverage(&deviations);
+}
+
+/// How often the truth is within the standard deviations that a snap says: 68 and 95 % are wanted.
+pub fn print_coverage(deviations: &[[f64; 6]]) {
+    let within = |axes: &[usize], sigmas: f64| {
+        let all: Vec<f64> =
+            deviations.iter().flat_map(|found| axes.iter().map(|&axis| found[axis])).collect();
+        percent(&all, |deviation| deviation.abs() < sigmas)
+    };
+    let part =
+        |name: &str, axes: &[usize]| format!("{name} {:.0}/{:.0}", within(axes, 1.0), within(axes, 1.96));
     println!(
-        "  truth within the 68 % of the covariance: {:.1} %, within its 95 %: {:.1} %; median Mahalanobis² {:.2} (5.35)",
-        percent(&distances, |&distance| distance < 7.04),
-        percent(&distances, |&distance| distance < 12.59),
-        median(&distances),
+        "  truth within 1 and 1.96 standard deviations, in %: {}, {}, {}, {}, {}",
+        part("all", &[0, 1, 2, 3, 4, 5]),
+        part("depth", &[5]),
+        part("lateral", &[3, 4]),
+        part("tilt", &[0, 1]),
+        part("roll", &[2]),
     );
 }
 
@@ -81,7 +94,7 @@ fn snap_one(
     object: &Object,
     off: (f64, f64, f64),
     reach: SnapReach,
-) -> (Run, Option<f64>) {
+) -> (Run, Option<[f64; 6]>) {
     let center = object.model.center_mm();
     let place = DVec3::new(60.0 * chance.signed(), 60.0 * chance.signed(), DISTANCE_MM);
     let turned = chance.rotation();
@@ -103,19 +116,29 @@ fn snap_one(
         verdict: outcome.verdict,
         ms,
     };
-    let distance = outcome.covariance.map(|covariance| mahalanobis_squared(&covariance, &found, &truth));
-    (run, distance)
+    let deviation = outcome.covariance.map(|covariance| deviations(&covariance, &found, &truth, center));
+    (run, deviation)
 }
 
-/// How far the truth is from an estimate, in standard deviations, squared.
-fn mahalanobis_squared(
-    covariance: &TwistCovariance,
-    found: &pinpose::math::Pose,
-    truth: &pinpose::math::Pose,
-) -> f64 {
-    let (turn, shift) = (*truth * found.inverse()).log();
-    let twist = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
-    covariance.mahalanobis_squared(&twist).unwrap_or(f64::INFINITY)
+/// How far the truth is from an estimate, in standard deviations: turned about two axes across the view ray and about it, then
+/// shifted along the same.
+pub fn deviations(covariance: &TwistCovariance, found: &Pose, truth: &Pose, center_mm: DVec3) -> [f64; 6] {
+    let place = found.transform_point(center_mm);
+    let covariance = covariance.about(place);
+    let ray = place.normalize();
+    let (across, down) = ray.any_orthonormal_pair();
+    let turned = rotation_vector_from_rotation(&(truth.rotation * found.rotation.transpose()));
+    let moved = truth.transform_point(center_mm) - place;
+    std::array::from_fn(|k| {
+        let (first, error) = if k < 3 { (0, turned) } else { (3, moved) };
+        let axis = [across, down, ray][k % 3];
+        let along = |row: usize| {
+            DVec3::from_array([0, 1, 2].map(|column: usize| covariance[first + row][first + column]))
+                .dot(axis)
+        };
+        let variance = DVec3::new(along(0), along(1), along(2)).dot(axis);
+        error.dot(axis) / variance.max(f64::MIN_POSITIVE).sqrt()
+    })
 }
 
 fn objects() -> Result<Vec<Object>, String> {

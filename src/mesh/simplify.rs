@@ -7,13 +7,13 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
 use super::weld::weld;
-use super::{Mesh, MeshData};
+use super::{Mesh, MeshData, PointTree};
 
-/// The mesh with vertices at the same place made one, and at most about `max_triangles` triangles. Colours and materials are
-/// left out. So few are not always reached: a collapse that would fold the surface or change how it is connected is not
+/// The mesh with vertices at the same place made one, and at most about `max_triangles` triangles. Vertex colours are
+/// those of the nearest vertex; materials are left out. So few are not always reached: a collapse that would fold the surface or change how it is connected is not
 /// made. `None` where no triangle has three different corners.
 pub fn simplified(mesh: &Mesh, max_triangles: usize) -> Option<Mesh> {
     let mut surface = Surface::new(mesh);
@@ -39,7 +39,16 @@ pub fn simplified(mesh: &Mesh, max_triangles: usize) -> Option<Mesh> {
             heap.extend(surface.candidate([candidate.edge[0], neighbor]));
         }
     }
-    surface.into_mesh()
+    with_colors_of(mesh, surface.into_mesh()?)
+}
+
+/// The mesh with the colour that the nearest vertex of `colored` has at each vertex, if it has any.
+fn with_colors_of(colored: &Mesh, mesh: Mesh) -> Option<Mesh> {
+    let Some(colors) = colored.colors() else { return Some(mesh) };
+    let tree = PointTree::build(colored.positions_mm())?;
+    let nearest = |position: &Vec3| colors.get(tree.nearest(position.as_dvec3())).copied();
+    let colors = mesh.positions_mm().iter().map(nearest).collect();
+    Mesh::new(MeshData { colors, ..mesh.data().clone() }).ok()
 }
 
 /// A symmetric quadratic function of a point: pᵀAp − 2bᵀp + c.

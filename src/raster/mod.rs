@@ -9,6 +9,8 @@ mod runs;
 mod silhouette;
 mod triangle;
 
+use glam::Vec3;
+
 use crate::math::{Intrinsics, Pose};
 use crate::mesh::Mesh;
 
@@ -60,42 +62,67 @@ impl PixelRegion {
 /// Distortion moves the vertices (as [`Intrinsics::project`] does) and edges stay straight between them, here as in the
 /// renderer: a mesh much coarser than the bend of the lens is drawn a little off.
 pub fn rasterize(camera: &Intrinsics, items: &[RasterItem<'_>], region: PixelRegion) -> RasterImage {
-    let pixel_count = region.width as usize * region.height as usize;
-    let mut image = RasterImage {
-        width: region.width,
-        height: region.height,
-        depth_mm: vec![0.0; pixel_count],
-        ids: vec![0; pixel_count],
-    };
-    if pixel_count == 0 {
-        return image;
-    }
-    let projector = clip::Projector::new(camera, region);
-    let mut vertices = Vec::new();
+    let mut image = RasterImage::empty(region);
     for item in items {
-        vertices.clear();
-        vertices.extend(item.mesh.positions_mm().iter().map(|position| {
-            let point_camera_mm = item.camera_from_object.transform_point(position.as_dvec3());
-            (point_camera_mm, projector.project(point_camera_mm))
-        }));
-        for triangle in item.mesh.triangles() {
-            let corners = triangle.map(|vertex| vertices[vertex as usize]);
-            if let [(_, Some(a)), (_, Some(b)), (_, Some(c))] = corners {
-                triangle::fill(&mut image, [a, b, c], item.id);
-            } else {
-                let [first, rest @ ..] = &projector.clip(corners.map(|(point, _)| point))[..] else {
-                    continue;
-                };
-                for pair in rest.windows(2) {
-                    triangle::fill(&mut image, [*first, pair[0], pair[1]], item.id);
-                }
-            }
-        }
+        draw(camera, item.mesh, &item.camera_from_object, region, &mut image, |_| item.id);
     }
     image
 }
 
+/// One mesh by itself, with [`RasterImage::ids`] that tell its triangles apart: one plus the triangle's number.
+pub fn rasterize_triangles(
+    camera: &Intrinsics,
+    mesh: &Mesh,
+    camera_from_object: &Pose,
+    region: PixelRegion,
+) -> RasterImage {
+    let mut image = RasterImage::empty(region);
+    draw(camera, mesh, camera_from_object, region, &mut image, |triangle| triangle + 1);
+    image
+}
+
+/// Draws the mesh over what is there; `id_of` gives what is written for a triangle.
+fn draw(
+    camera: &Intrinsics,
+    mesh: &Mesh,
+    camera_from_object: &Pose,
+    region: PixelRegion,
+    image: &mut RasterImage,
+    id_of: impl Fn(u32) -> u32,
+) {
+    let projector = clip::Projector::new(camera, region);
+    let project = |position: &Vec3| {
+        let point_camera_mm = camera_from_object.transform_point(position.as_dvec3());
+        (point_camera_mm, projector.project(point_camera_mm))
+    };
+    let vertices: Vec<_> = mesh.positions_mm().iter().map(project).collect();
+    for (number, triangle) in (0..).zip(mesh.triangles()) {
+        let corners = triangle.map(|vertex| vertices[vertex as usize]);
+        if let [(_, Some(a)), (_, Some(b)), (_, Some(c))] = corners {
+            triangle::fill(image, [a, b, c], id_of(number));
+        } else {
+            let [first, rest @ ..] = &projector.clip(corners.map(|(point, _)| point))[..] else {
+                continue;
+            };
+            for pair in rest.windows(2) {
+                triangle::fill(image, [*first, pair[0], pair[1]], id_of(number));
+            }
+        }
+    }
+}
+
 impl RasterImage {
+    /// Of a region in which nothing is.
+    fn empty(region: PixelRegion) -> Self {
+        let pixel_count = region.width as usize * region.height as usize;
+        Self {
+            width: region.width,
+            height: region.height,
+            depth_mm: vec![0.0; pixel_count],
+            ids: vec![0; pixel_count],
+        }
+    }
+
     /// Where the item of this number is the nearest.
     pub fn mask(&self, id: u32) -> Mask {
         Mask::from_pixels(self.width, self.height, self.ids.iter().map(|&found| found == id))

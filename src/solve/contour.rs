@@ -5,12 +5,13 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::motion::project_with_jacobian;
+use super::shading::{Shading, barycentric};
 use crate::math::{Intrinsics, Pose};
 use crate::mesh::{Mesh, simplified};
-use crate::raster::{PixelRegion, RasterImage, RasterItem, rasterize};
+use crate::raster::{PixelRegion, RasterImage, RasterItem, rasterize, rasterize_triangles};
 
 /// A mesh of more triangles is simplified before solvers look at it.
 pub const MAX_TRIANGLES: usize = 8000;
@@ -47,6 +48,7 @@ pub struct ContourModel {
     normals: Vec<DVec3>,
     edges: Vec<Edge>,
     diameter_mm: f64,
+    shading: Shading,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -117,22 +119,37 @@ impl DepthView {
         occluders: &Occluders,
         region: PixelRegion,
     ) -> Self {
-        let item = RasterItem { mesh: &model.mesh, camera_from_object, id: OBJECT_ID };
-        let mut image = rasterize(camera, &[item], region);
-        let Some(other) = &occluders.0 else { return Self { image, region } };
-        let pixels = image.depth_mm.iter_mut().zip(&mut image.ids).zip(other.depth_mm.iter().zip(&other.ids));
-        for ((depth_mm, id), (&other_depth_mm, &other_id)) in pixels {
+        Self::draw_faces(camera, model, camera_from_object, occluders, region).0
+    }
+
+    /// With the face that is seen at each pixel: one plus its number, 0 where the object is not seen.
+    pub fn draw_faces(
+        camera: &Intrinsics,
+        model: &ContourModel,
+        camera_from_object: Pose,
+        occluders: &Occluders,
+        region: PixelRegion,
+    ) -> (Self, Vec<u32>) {
+        let mut image = rasterize_triangles(camera, &model.mesh, &camera_from_object, region);
+        let mut faces = image.ids.clone();
+        image.ids.iter_mut().for_each(|id| *id = if *id == 0 { 0 } else { OBJECT_ID });
+        let Some(other) = &occluders.0 else { return (Self { image, region }, faces) };
+        let seen = image.depth_mm.iter_mut().zip(&mut image.ids).zip(&mut faces);
+        let others = other.depth_mm.iter().zip(&other.ids);
+        for (((depth_mm, id), face), (&other_depth_mm, &other_id)) in seen.zip(others) {
             if other_id != 0 && (*id == 0 || other_depth_mm < *depth_mm) {
-                (*depth_mm, *id) = (other_depth_mm, other_id);
+                (*depth_mm, *id, *face) = (other_depth_mm, other_id, 0);
             }
         }
-        Self { image, region }
+        (Self { image, region }, faces)
     }
 
     /// The number and the depth of what is seen at the pixel nearest to this place; 0 where nothing is, `None` outside.
     pub fn at(&self, pixel: DVec2) -> Option<(u32, f64)> {
-        let x = pixel.x.round() as i64 - i64::from(self.region.x0);
-        let y = pixel.y.round() as i64 - i64::from(self.region.y0);
+        // WebAssembly has an instruction for this, and none for what `round` does with halves.
+        let whole = (pixel + 0.5).floor();
+        let x = whole.x as i64 - i64::from(self.region.x0);
+        let y = whole.y as i64 - i64::from(self.region.y0);
         let (width, height) = (i64::from(self.region.width), i64::from(self.region.height));
         if !(0..width).contains(&x) || !(0..height).contains(&y) {
             return None;
@@ -156,11 +173,19 @@ impl ContourModel {
             .collect();
         let edges = edges(&mesh, &normals);
         let diameter_mm = 2.0 * mesh.sphere().radius;
-        Some(Self { mesh, normals, edges, diameter_mm })
+        let shading = Shading::of(&mesh);
+        Some(Self { mesh, normals, edges, diameter_mm, shading })
     }
 
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// The unit normal and the colour (in sRGB, 0 to 1; white where there are no colours) at a point of a face, in the
+    /// `object` frame. `None` for a face without area.
+    pub fn shade_at(&self, face: usize, point_mm: DVec3) -> Option<(DVec3, Vec3)> {
+        let corners = self.mesh.corners(*self.mesh.triangles().get(face)?);
+        self.shading.at(face, barycentric(corners, point_mm)?)
     }
 
     pub fn diameter_mm(&self) -> f64 {

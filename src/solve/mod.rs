@@ -8,6 +8,7 @@ mod least_squares;
 mod linear;
 mod motion;
 pub mod pins;
+mod shading;
 pub mod snap;
 pub mod symmetry;
 #[cfg(test)]

@@ -13,10 +13,13 @@ pub fn write(file: &NamedFile, companions: &[NamedFile]) -> Result<Vec<u8>, Stri
     let mut writer = Writer::default();
     writer.items(mesh.positions_mm());
     writer.items(mesh.triangles());
+    writer.items(mesh.colors().unwrap_or_default());
     Ok(writer.finish())
 }
 
 pub fn read(reader: &mut Reader<'_>) -> Option<Mesh> {
     let (positions_mm, triangles) = (reader.items()?, reader.items()?);
-    Mesh::new(MeshData { positions_mm, triangles, ..MeshData::default() }).ok()
+    let colors: Vec<[u8; 4]> = reader.items()?;
+    let colors = (!colors.is_empty()).then_some(colors);
+    Mesh::new(MeshData { positions_mm, triangles, colors, ..MeshData::default() }).ok()
 }

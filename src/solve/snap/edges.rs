@@ -60,56 +60,70 @@ fn fitness(picture: &Picture, colors: &ColorModel, point: &ContourPoint, offset_
     1.0 / (1.0 + (0.5 * (odds(1.0) - odds(-1.0))).exp())
 }
 
-/// How far the line of an exact measurement goes to either side, in pixels.
-const COVERAGE_REACH: i32 = 6;
-/// Half a pixel between samples.
-const COVERAGE_STEPS_PER_PX: i32 = 2;
+/// Samples per pixel along the line of an exact measurement.
+const COVERAGE_STEPS_PER_PX: usize = 2;
 /// Of object and background on a line, to tell them apart: in linear light.
 const SMALLEST_CONTRAST: f64 = 0.04;
-/// How far a line may be from the one clear step that it should be, root mean square, as a part of the step.
+/// How far a line may be from the one clear step that it should be, root mean square, as a part of the step: about its
+/// middle, and about each end.
 const WORST_FIT: f64 = 0.16;
+const WORST_END: f64 = 0.3;
+/// What is left in pixels where all is clear.
+const COVERAGE_SIGMA_PX: f64 = 0.1;
 
 /// The exact place of the outline on each line where the picture shows one clear step: a pixel that the object covers by a
 /// part has that part of its light, so the sum over a line says where the object ends, whatever the blur.
-pub fn measure_coverage(picture: &Picture, points: &[ContourPoint]) -> Vec<Pull> {
+///
+/// Lines go `reach_px` to either side. The outer half of each side says what object and background look like here.
+pub fn measure_coverage(picture: &Picture, points: &[ContourPoint], reach_px: usize) -> Vec<Pull> {
     let outline = points.iter().filter(|point| point.kind == EdgeKind::Outline);
-    outline.filter_map(|point| measure_line(picture, point)).collect()
+    outline.filter_map(|point| measure_line(picture, point, reach_px)).collect()
 }
 
-fn measure_line(picture: &Picture, point: &ContourPoint) -> Option<Pull> {
-    let last = COVERAGE_REACH * COVERAGE_STEPS_PER_PX;
-    let place = |k: i32| f64::from(k) / f64::from(COVERAGE_STEPS_PER_PX);
-    let light: Option<Vec<DVec3>> = (-last..=last)
-        .map(|k| picture.color(point.pixel + point.normal * place(k)).map(linear_light))
+fn measure_line(picture: &Picture, point: &ContourPoint, reach_px: usize) -> Option<Pull> {
+    let steps_per_px = COVERAGE_STEPS_PER_PX as f64;
+    let end = (reach_px * COVERAGE_STEPS_PER_PX) as i32;
+    let light: Option<Vec<DVec3>> = (-end..=end)
+        .map(|k| {
+            picture
+                .light(point.pixel + point.normal * (f64::from(k) / steps_per_px))
+                .map(|light| DVec3::from_array(light.map(f64::from)))
+        })
         .collect();
     let light = light?;
-    let ends = (2 * COVERAGE_STEPS_PER_PX + 1) as usize;
-    let mean = |part: &[DVec3]| part.iter().sum::<DVec3>() / part.len() as f64;
-    let (inside, outside) = (mean(&light[..ends]), mean(&light[light.len() - ends..]));
+    // Half of either side, with the sample at its border.
+    let outer = reach_px * COVERAGE_STEPS_PER_PX / 2;
+    let [inside_part, outside_part] = [light.get(..=outer)?, light.get(light.len() - 1 - outer..)?];
+    let (inside, inside_spread) = mean_and_spread(inside_part);
+    let (outside, outside_spread) = mean_and_spread(outside_part);
     let step = inside - outside;
-    if step.length() < SMALLEST_CONTRAST {
+    let contrast = step.length();
+    if contrast < SMALLEST_CONTRAST {
         return None;
     }
-    let coverage: Vec<f64> =
-        light.iter().map(|light| (*light - outside).dot(step) / step.length_squared()).collect();
+    let noise = (0.5 * (inside_spread + outside_spread)).sqrt() / contrast;
+    let middle = light.get(outer..light.len() - outer)?;
+    let half_px = (middle.len() - 1) as f64 / (2.0 * steps_per_px);
+    let coverage = |light: &DVec3| (*light - outside).dot(step) / step.length_squared();
+    let [first, .., last] = middle else { return None };
     // The trapezium rule from one end to the other: as if the object covered all up to there and nothing beyond.
-    let inner: f64 = coverage.iter().sum::<f64>() - 0.5 * (coverage[0] + coverage[coverage.len() - 1]);
-    let offset_px = inner / f64::from(COVERAGE_STEPS_PER_PX) - f64::from(COVERAGE_REACH);
+    let inner = middle.iter().map(coverage).sum::<f64>() - 0.5 * (coverage(first) + coverage(last));
+    let offset_px = inner / steps_per_px - half_px;
     // A step blurred over some two pixels, as lenses do it.
     let ideal = |x: f64| 0.5 - 0.5 * (1.2 * (x - offset_px)).tanh();
-    let misfit = (-last..=last).zip(light.iter()).map(|(k, light)| {
-        (*light - (outside + step * ideal(place(k)))).length_squared() / step.length_squared()
+    let misfit = middle.iter().enumerate().map(|(k, light)| {
+        let expected = outside + step * ideal(k as f64 / steps_per_px - half_px);
+        light.distance_squared(expected) / step.length_squared()
     });
-    let fit = (misfit.sum::<f64>() / light.len() as f64).sqrt();
-    let is_clear = fit < WORST_FIT && offset_px.abs() < f64::from(COVERAGE_REACH) / 2.0;
-    is_clear.then(|| Pull { point: *point, offset_px, variance_px: (0.3 + 3.0 * fit).powi(2) })
+    let fit = (misfit.sum::<f64>() / middle.len() as f64).sqrt();
+    let is_clear = fit < WORST_FIT && noise < WORST_END && offset_px.abs() < 0.7 * half_px;
+    let variance_px = (COVERAGE_SIGMA_PX + fit + noise).powi(2);
+    is_clear.then_some(Pull { point: *point, offset_px, variance_px })
 }
 
-/// From sRGB.
-fn linear_light(color: [f32; 3]) -> DVec3 {
-    let linear = |value: f32| {
-        let value = f64::from(value);
-        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-    };
-    DVec3::from_array(color.map(linear))
+/// The mean of colours and their mean squared distance from it.
+fn mean_and_spread(colors: &[DVec3]) -> (DVec3, f64) {
+    let count = colors.len() as f64;
+    let mean = colors.iter().sum::<DVec3>() / count;
+    (mean, colors.iter().map(|color| color.distance_squared(mean)).sum::<f64>() / count)
 }

@@ -3,15 +3,26 @@
 use super::colors::{Band, ColorModel};
 use super::picture::Picture;
 use super::score::{SnapScore, score};
+use super::sight::Sight;
 use crate::math::{ImageRect, Intrinsics, NEAR_MM, Pose};
 use crate::raster::PixelRegion;
-use crate::solve::contour::{ContourModel, ContourPoint, DepthView, Occluders};
+use crate::solve::contour::{ContourModel, ContourPoint, DepthView};
 
 /// Contour points, about; more lie so close that they tell the same.
 const POINTS: f64 = 220.0;
 
+/// How many points are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Density {
+    /// Half as many: enough to find the way.
+    Coarse,
+    Fine,
+}
+
 pub struct Look {
     pub view: DepthView,
+    /// One plus the number of the face that is seen, pixel by pixel.
+    pub faces: Vec<u32>,
     pub points: Vec<ContourPoint>,
     size_px: f64,
     /// Points closer than two pixels to each other tell the same: what part of their weight is their own.
@@ -19,14 +30,16 @@ pub struct Look {
 }
 
 impl Look {
-    pub fn at(picture: &Picture, model: &ContourModel, occluders: &Occluders, pose: &Pose) -> Self {
+    pub fn at(sight: &Sight, model: &ContourModel, pose: &Pose, density: Density) -> Self {
+        let Sight { picture, occluders } = sight;
         let region = PixelRegion::of_camera(&picture.camera);
-        let view = DepthView::draw(&picture.camera, model, *pose, occluders, region);
+        let (view, faces) = DepthView::draw_faces(&picture.camera, model, *pose, occluders, region);
         let distance = pose.transform_point(model.center_mm()).z.max(NEAR_MM);
         let size_px = picture.camera.focal_px() * model.diameter_mm() / distance;
-        let spacing_px = (std::f64::consts::PI * size_px / POINTS).max(0.5);
+        let sparseness = if density == Density::Coarse { 2.0 } else { 1.0 };
+        let spacing_px = sparseness * (std::f64::consts::PI * size_px / POINTS).max(0.5);
         let points = model.points(&picture.camera, pose, &view, spacing_px);
-        Self { view, points, size_px, independence: (spacing_px / 2.0).min(1.0) }
+        Self { view, faces, points, size_px, independence: (spacing_px / 2.0).min(1.0) }
     }
 
     /// The colours on the two sides of this pose's outline. Pixels within `unsure_px` of it teach nothing, or those within a

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::palette::Palette;
+use super::palette::{COLORS, Palette};
 use crate::math::{ImageRect, Intrinsics};
 use crate::photo::{Pixels, half_size};
 use crate::raster::Mask;
@@ -14,8 +14,10 @@ pub struct Picture {
     pub camera: Intrinsics,
     pub width: usize,
     pub height: usize,
-    /// Colours in sRGB, 0 to 1, row by row.
-    colors: Vec<[f32; 3]>,
+    /// Linear light, 0 to 1, row by row.
+    light: Vec<[f32; 3]>,
+    /// Colours in sRGB, 0 to 1, blurred against noise.
+    smoothed: Vec<[f32; 3]>,
     /// The same, as numbers of a few colours.
     pub palette: Palette,
     /// How strong and in which direction colours change at each pixel: of length 0 where they do not, near 1 at a clear edge.
@@ -28,13 +30,17 @@ pub struct Picture {
     pub photo_px: f64,
 }
 
-/// Objects larger than this are looked at in a smaller copy of the photo: more pixels cost time and tell no more.
-const LARGEST_OBJECT_PX: f64 = 300.0;
-
 impl Picture {
-    /// The part of the photo around `object`, a rectangle in its pixels, with room for errors about it. `None` where nothing
-    /// of that is in the photo. A mask has the photo's size, or is left out.
-    pub fn new(photo: &Pixels, camera: &Intrinsics, object: &ImageRect, mask: Option<&Mask>) -> Option<Self> {
+    /// The part of the photo around `object`, a rectangle in its pixels, with room for errors about it, halved until the
+    /// object is not larger than `largest_object_px`. `None` where nothing of that is in the photo. A mask has the photo's
+    /// size, or is left out.
+    pub fn new(
+        photo: &Pixels,
+        camera: &Intrinsics,
+        object: &ImageRect,
+        mask: Option<&Mask>,
+        largest_object_px: f64,
+    ) -> Option<Self> {
         let size_px = object.size().max_element();
         let margin = DVec2::splat(0.5 * size_px + 25.0);
         let photo_rect = ImageRect::of_photo(photo.width, photo.height);
@@ -52,7 +58,7 @@ impl Picture {
             ..*camera
         };
         let mut photo_px = 1.0;
-        while size_px / photo_px > LARGEST_OBJECT_PX && cut.0.width.min(cut.0.height) > 32 {
+        while size_px / photo_px > largest_object_px && cut.0.width.min(cut.0.height) > 32 {
             cut.0 = half_size(&cut.0);
             // An odd last row or column was left out by the halving, so the camera is halved by itself, not by the sizes.
             camera = Intrinsics {
@@ -67,12 +73,12 @@ impl Picture {
             };
             photo_px *= 2.0;
         }
-        let colors: Vec<[f32; 3]> = cut
-            .0
-            .rgba
-            .chunks_exact(4)
-            .map(|p| [p[0], p[1], p[2]].map(|value| f32::from(value) / 255.0))
-            .collect();
+        let light_of: [f32; 256] = std::array::from_fn(|value| linear_light(value as f32 / 255.0));
+        let pixels = cut.0.rgba.as_chunks::<4>().0;
+        let colors: Vec<[f32; 3]> =
+            pixels.iter().map(|&[r, g, b, _]| [r, g, b].map(|value| f32::from(value) / 255.0)).collect();
+        let light =
+            pixels.iter().map(|&[r, g, b, _]| [r, g, b].map(|value| light_of[usize::from(value)])).collect();
         let (width, height) = (cut.0.width as usize, cut.0.height as usize);
         let mut picture = Self {
             camera,
@@ -80,8 +86,9 @@ impl Picture {
             height,
             palette: Palette::new(&colors),
             gradients: gradients(&colors, width, height),
+            smoothed: smoothed(&colors, width, height),
             mask: None,
-            colors,
+            light,
             origin: cut.1,
             photo_px,
         };
@@ -125,6 +132,11 @@ impl Picture {
         Some((x * normal.x as f32 + y * normal.y as f32).abs())
     }
 
+    /// A pixel's colour, a little blurred; black outside.
+    pub fn smooth_color(&self, index: usize) -> [f32; 3] {
+        self.smoothed.get(index).copied().unwrap_or_default()
+    }
+
     /// Where a pixel of the photo is here.
     pub fn place_of(&self, photo_pixel: DVec2) -> DVec2 {
         (photo_pixel - self.origin + 0.5) / self.photo_px - 0.5
@@ -132,14 +144,26 @@ impl Picture {
 
     /// The number of the pixel nearest to a place; `None` outside.
     pub fn index(&self, pixel: DVec2) -> Option<usize> {
-        let (x, y) = (pixel.x.round(), pixel.y.round());
+        let (x, y) = (pixel.x + 0.5, pixel.y + 0.5);
         let is_inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
+        // Cutting off is rounding here, and a single instruction.
         is_inside.then(|| y as usize * self.width + x as usize)
     }
 
-    /// The colour between four pixels; `None` outside of their centres.
-    pub fn color(&self, pixel: DVec2) -> Option<[f32; 3]> {
-        self.between(&self.colors, pixel)
+    /// The same at a pixel.
+    pub fn edge_at(&self, index: usize, normal: [f32; 2]) -> f32 {
+        let [x, y] = self.gradients.get(index).copied().unwrap_or_default();
+        (x * normal[0] + y * normal[1]).abs()
+    }
+
+    /// The number of a pixel's colour in the palette.
+    pub fn label(&self, index: usize) -> usize {
+        usize::from(self.palette.labels.get(index).copied().unwrap_or_default()) % COLORS
+    }
+
+    /// Linear light between four pixels; `None` outside of their centres.
+    pub fn light(&self, pixel: DVec2) -> Option<[f32; 3]> {
+        self.between(&self.light, pixel)
     }
 
     fn between<const N: usize>(&self, values: &[[f32; N]], pixel: DVec2) -> Option<[f32; N]> {
@@ -163,6 +187,11 @@ impl Picture {
     }
 }
 
+/// From sRGB.
+fn linear_light(value: f32) -> f32 {
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
 /// A picture in which colours change less than this from pixel to pixel has no edges, only noise.
 const FAINTEST_USUAL: f32 = 0.01;
 
@@ -179,6 +208,25 @@ fn gradients(colors: &[[f32; 3]], width: usize, height: usize) -> Vec<[f32; 2]> 
     let usual = gradients.iter().map(|&g| length(g)).sum::<f32>() / (gradients.len() as f32).max(1.0);
     let scale = usual.max(FAINTEST_USUAL);
     gradients.iter().map(|&g| g.map(|value| value / (length(g) + scale))).collect()
+}
+
+/// Blurred by 1 2 1 along each axis.
+fn smoothed(colors: &[[f32; 3]], width: usize, height: usize) -> Vec<[f32; 3]> {
+    let along =
+        |colors: &[[f32; 3]], stride: usize, place: &dyn Fn(usize) -> (usize, usize)| -> Vec<[f32; 3]> {
+            (0..colors.len())
+                .map(|i| {
+                    let (at, count) = place(i);
+                    let before = if at > 0 { i - stride } else { i };
+                    let after = if at + 1 < count { i + stride } else { i };
+                    std::array::from_fn(|c| {
+                        0.25 * colors[before][c] + 0.5 * colors[i][c] + 0.25 * colors[after][c]
+                    })
+                })
+                .collect()
+        };
+    let across = along(colors, 1, &|i| (i % width, width));
+    along(&across, width, &|i| (i / width, height))
 }
 
 /// Per pixel, with a sign that does not depend on which side is brighter: edges are lines here, not steps.

@@ -4,20 +4,13 @@ use glam::DVec3;
 
 use super::SnapReach;
 use super::picture::Picture;
-use crate::math::{Pose, rotation_from_rotation_vector, rotation_vector_from_rotation};
-use crate::solve::contour::ContourModel;
+use crate::math::{Pose, rotation_vector_from_rotation};
 use crate::solve::least_squares::NormalEquations;
 use crate::solve::motion::{motion_row, project_with_jacobian};
 use crate::solve::pins::Pin;
 
 /// Noise of a click: what a pin pulls with.
 const PIN_SIGMA_PX: f64 = 2.0;
-/// How many starts there are, and how far the further ones are turned.
-const NEAR_STARTS: usize = 5;
-const NEAR_TURN_DEG: f64 = 6.0;
-const WIDE_STARTS: usize = 11;
-const WIDE_TURN_DEG: f64 = 14.0;
-
 #[derive(Debug, Clone)]
 pub struct Prior {
     /// From the `object` frame to the `camera` frame.
@@ -37,35 +30,6 @@ struct Spread {
 }
 
 impl Prior {
-    /// Where to begin: the start itself first.
-    pub fn starts(&self, model: &ContourModel) -> Vec<Pose> {
-        let center = self.start.transform_point(model.center_mm());
-        let (count, turn) = match self.reach {
-            SnapReach::Near => (NEAR_STARTS, NEAR_TURN_DEG.to_radians()),
-            SnapReach::Wide => (WIDE_STARTS, WIDE_TURN_DEG.to_radians()),
-        };
-        let (x, y, z) = (DVec3::X * turn, DVec3::Y * turn, DVec3::Z * turn);
-        let slant = std::f64::consts::FRAC_1_SQRT_2;
-        let turns = [
-            DVec3::ZERO,
-            x,
-            -x,
-            y,
-            -y,
-            (x + y) * slant,
-            (x - y) * slant,
-            (y - x) * slant,
-            -(x + y) * slant,
-            z,
-            -z,
-        ];
-        turns
-            .into_iter()
-            .take(count)
-            .map(|turn| Pose::rotation_about(center, rotation_from_rotation_vector(turn)) * self.start)
-            .collect()
-    }
-
     fn spread(&self) -> Spread {
         match self.reach {
             SnapReach::Near => Spread { turn_rad: 5_f64.to_radians(), depth: 0.04, shift_px: 10.0 },

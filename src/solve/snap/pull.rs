@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::picture::Picture;
 use crate::math::Pose;
-use crate::solve::contour::ContourPoint;
+use crate::solve::contour::{ContourPoint, EdgeKind};
 use crate::solve::least_squares::NormalEquations;
 use crate::solve::motion::{motion_row, project_with_jacobian};
 
@@ -26,14 +26,16 @@ pub struct Trust {
     pub gate_px: f64,
 }
 
-/// Adds the pulls to the normal equations of small motions of `pose` about `pivot_camera_mm`.
+/// Adds the pulls to the normal equations of small motions of `pose` about `pivot_camera_mm`, and returns the gradient that
+/// all of them would add if the whole contour were seen a pixel farther out.
 pub fn add_pulls(
     equations: &mut NormalEquations<6>,
     picture: &Picture,
     (pose, pivot_camera_mm): (&Pose, DVec3),
     pulls: &[Pull],
     trust: Trust,
-) {
+) -> [f64; 6] {
+    let mut outward = [0.0; 6];
     for pull in pulls {
         let seen = pose.transform_point(pull.point.point_mm);
         let Some((pixel, [by_x, by_y])) = project_with_jacobian(&picture.camera, seen) else { continue };
@@ -42,7 +44,12 @@ pub fn add_pulls(
         let rest = 1.0 - (residual / trust.gate_px).powi(2);
         if rest > 0.0 {
             let row = motion_row(seen - pivot_camera_mm, by_x * normal.x + by_y * normal.y);
-            equations.add(&row, residual, trust.share * rest * rest / pull.variance_px);
+            let weight = trust.share * rest * rest / pull.variance_px;
+            equations.add(&row, residual, weight);
+            if pull.point.kind == EdgeKind::Outline {
+                outward.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
+            }
         }
     }
+    outward
 }

@@ -4,13 +4,14 @@ use glam::DVec3;
 
 use super::SnapReach;
 use super::colors::ColorModel;
-use super::look::{Look, is_before_camera};
-use super::picture::Picture;
+use super::look::{Density, Look, is_before_camera};
 use super::prior::Prior;
 use super::pull::{Pull, Trust, add_pulls};
+use super::sight::Sight;
+use super::surface::add_surface;
 use super::{edges, lines};
 use crate::math::Pose;
-use crate::solve::contour::{ContourModel, Occluders};
+use crate::solve::contour::ContourModel;
 use crate::solve::least_squares::NormalEquations;
 use crate::solve::linear::solve;
 use crate::solve::motion::moved_about;
@@ -34,7 +35,14 @@ pub struct Stage {
 const LINE_SHARE: f64 = 0.03;
 const LINE_SHARE_BESIDE_EDGES: f64 = 0.01;
 const EDGE_SHARE: f64 = 0.1;
-const COVERAGE_SHARE: f64 = 0.2;
+const COVERAGE_SHARE: f64 = 0.1;
+const SURFACE_SHARE: f64 = 0.01;
+
+impl Stage {
+    const fn has_edges(&self) -> bool {
+        self.edge_reach_px > 0.0
+    }
+}
 
 const fn regions(steps: u32, stride_px: usize, unsure_px: f64) -> Stage {
     Stage { steps, stride_px, unsure_px, edge_reach_px: 0.0, coverage: false }
@@ -44,16 +52,16 @@ const fn regions(steps: u32, stride_px: usize, unsure_px: f64) -> Stage {
 const NEAR: [&[Stage]; 2] = [
     &[regions(2, 3, 5.0), regions(2, 2, 3.0), regions(2, 2, 2.0)],
     &[
-        Stage { steps: 2, stride_px: 1, unsure_px: 1.5, edge_reach_px: 5.0, coverage: false },
-        Stage { steps: 3, stride_px: 1, unsure_px: 1.5, edge_reach_px: 3.0, coverage: true },
+        Stage { steps: 3, stride_px: 1, unsure_px: 1.5, edge_reach_px: 5.0, coverage: false },
+        Stage { steps: 5, stride_px: 1, unsure_px: 1.5, edge_reach_px: 3.0, coverage: true },
     ],
 ];
 const WIDE: [&[Stage]; 2] = [
     &[regions(2, 5, 6.0), regions(2, 3, 4.0), regions(1, 2, 2.0)],
     &[
         regions(2, 2, 2.0),
-        Stage { steps: 2, stride_px: 1, unsure_px: 1.5, edge_reach_px: 5.0, coverage: false },
-        Stage { steps: 3, stride_px: 1, unsure_px: 1.5, edge_reach_px: 3.0, coverage: true },
+        Stage { steps: 3, stride_px: 1, unsure_px: 1.5, edge_reach_px: 5.0, coverage: false },
+        Stage { steps: 5, stride_px: 1, unsure_px: 1.5, edge_reach_px: 3.0, coverage: true },
     ],
 ];
 
@@ -70,18 +78,17 @@ pub fn steps(reach: SnapReach, is_fine: bool) -> u32 {
     1 + stages(reach, is_fine).iter().map(|stage| stage.steps).sum::<u32>()
 }
 
-/// How many of the starts go on to the second phase.
-pub fn kept(reach: SnapReach) -> usize {
+/// How many of the places that were found are refined, and how many of those go on to the second phase.
+pub fn kept(reach: SnapReach) -> [usize; 2] {
     match reach {
-        SnapReach::Near => 2,
-        SnapReach::Wide => 3,
+        SnapReach::Near => [2, 1],
+        SnapReach::Wide => [3, 2],
     }
 }
 
 /// What all refinements look at.
 pub struct Scene<'a> {
-    pub picture: &'a Picture,
-    pub occluders: &'a Occluders,
+    pub sight: &'a Sight,
     pub model: &'a ContourModel,
     pub prior: &'a Prior,
 }
@@ -91,11 +98,22 @@ pub struct Scene<'a> {
 pub struct Ended {
     pub pose: Pose,
     pub score: f64,
-    /// Of the picture and the pins, without the start; for small motions about the pivot.
+    pub evidence: Evidence,
+    pub pivot_camera_mm: DVec3,
+}
+
+/// What the picture and the pins say, without the start; for small motions about the pivot.
+#[derive(Debug, Clone)]
+pub struct Evidence {
     pub equations: NormalEquations<6>,
     /// How many measurements stand behind them.
     pub pulls: f64,
-    pub pivot_camera_mm: DVec3,
+    /// The gradient that an outline seen one pixel farther out would add.
+    pub outward: [f64; 6],
+}
+
+impl Evidence {
+    const NONE: Self = Self { equations: NormalEquations::ZERO, pulls: 0.0, outward: [0.0; 6] };
 }
 
 /// The way from one start.
@@ -105,27 +123,22 @@ pub struct Refinement {
     colors: Option<ColorModel>,
     stage: usize,
     step: u32,
-    last: (NormalEquations<6>, f64),
+    last: Evidence,
     ends: Vec<Ended>,
 }
 
 impl From<Pose> for Refinement {
     fn from(start: Pose) -> Self {
-        Self {
-            pose: start,
-            colors: None,
-            stage: 0,
-            step: 0,
-            last: (NormalEquations::ZERO, 0.0),
-            ends: Vec::new(),
-        }
+        Self { pose: start, colors: None, stage: 0, step: 0, last: Evidence::NONE, ends: Vec::new() }
     }
 }
 
 impl Refinement {
     /// One iteration; whether it was the last.
     pub fn advance(&mut self, scene: &Scene<'_>, stages: &[Stage]) -> bool {
-        let look = Look::at(scene.picture, scene.model, scene.occluders, &self.pose);
+        let is_coarse = stages.get(self.stage).is_some_and(|stage| !stage.has_edges());
+        let density = if is_coarse { Density::Coarse } else { Density::Fine };
+        let look = Look::at(scene.sight, scene.model, &self.pose, density);
         let Some(stage) = stages.get(self.stage) else {
             self.end(scene, &look);
             return true;
@@ -134,7 +147,7 @@ impl Refinement {
             if stage.coverage {
                 self.end(scene, &look);
             }
-            self.colors = look.colors(scene.picture, stage.unsure_px);
+            self.colors = look.colors(&scene.sight.picture, stage.unsure_px);
         }
         if !self.iterate(scene, stage, &look) {
             return true;
@@ -159,53 +172,64 @@ impl Refinement {
     }
 
     fn end(&mut self, scene: &Scene<'_>, look: &Look) {
-        let Some(score) = look.score(scene.picture) else { return };
+        let Some(score) = look.score(&scene.sight.picture) else { return };
         let pivot_camera_mm = self.pose.transform_point(scene.model.center_mm());
-        let (equations, pulls) = self.last.clone();
-        self.ends.push(Ended { pose: self.pose, score: score.total(), equations, pulls, pivot_camera_mm });
+        let evidence = self.last.clone();
+        self.ends.push(Ended { pose: self.pose, score: score.total(), evidence, pivot_camera_mm });
     }
 
     /// Whether there was enough to see.
     fn iterate(&mut self, scene: &Scene<'_>, stage: &Stage, look: &Look) -> bool {
         let Some(colors) = &self.colors else { return false };
-        let lines = lines::search(scene.picture, &look.view, colors, &look.points, stage.stride_px);
+        let lines = lines::search(&scene.sight.picture, &look.view, colors, &look.points, stage.stride_px);
         if lines.len() < 12 {
             return false;
         }
         let mut kinds: Vec<(Vec<Pull>, Trust)> = Vec::with_capacity(3);
-        let has_edges = stage.edge_reach_px > 0.0;
-        let line_share = if has_edges { LINE_SHARE_BESIDE_EDGES } else { LINE_SHARE };
+        let line_share = if stage.has_edges() { LINE_SHARE_BESIDE_EDGES } else { LINE_SHARE };
         kinds.push((lines, Trust { share: look.independence * line_share, gate_px: f64::INFINITY }));
-        if has_edges {
-            let found = edges::search(scene.picture, colors, &look.points, stage.edge_reach_px);
+        if stage.has_edges() {
+            let found = edges::search(&scene.sight.picture, colors, &look.points, stage.edge_reach_px);
             let share = look.independence * EDGE_SHARE;
             kinds.push((found, Trust { share, gate_px: stage.edge_reach_px }));
         }
         if stage.coverage {
-            let found = edges::measure_coverage(scene.picture, &look.points);
-            kinds.push((found, Trust { share: look.independence * COVERAGE_SHARE, gate_px: 2.0 }));
+            let reach_px = if self.step < 2 { 4 } else { 3 };
+            let found = edges::measure_coverage(&scene.sight.picture, &look.points, reach_px);
+            let gate_px = coverage_gate_px(&found);
+            kinds.push((found, Trust { share: look.independence * COVERAGE_SHARE, gate_px }));
+        }
+        if stage.coverage {
+            self.take_step(scene, &kinds, Some(look));
+            return true;
         }
         // The lines stay where they are while the pose takes two steps along them.
         for _ in 0..2 {
-            if !self.take_step(scene, &kinds) {
+            if !self.take_step(scene, &kinds, None) {
                 break;
             }
         }
         true
     }
 
-    fn take_step(&mut self, scene: &Scene<'_>, kinds: &[(Vec<Pull>, Trust)]) -> bool {
+    /// Along the pulls, and with `surface` along what that look's inner pixels want.
+    fn take_step(&mut self, scene: &Scene<'_>, kinds: &[(Vec<Pull>, Trust)], surface: Option<&Look>) -> bool {
         let center_mm = scene.model.center_mm();
         let pivot = self.pose.transform_point(center_mm);
-        let mut equations = NormalEquations::ZERO;
-        let mut count = 0.0;
-        for (pulls, trust) in kinds {
-            add_pulls(&mut equations, scene.picture, (&self.pose, pivot), pulls, *trust);
-            count += trust.share * pulls.len() as f64;
+        let Evidence { mut equations, mut pulls, mut outward } = Evidence::NONE;
+        let about = (&self.pose, pivot);
+        for (found, trust) in kinds {
+            let gradient = add_pulls(&mut equations, &scene.sight.picture, about, found, *trust);
+            outward.iter_mut().zip(gradient).for_each(|(sum, value)| *sum += value);
+            pulls += trust.share * found.len() as f64;
         }
-        scene.prior.add_pins(&mut equations, scene.picture, (&self.pose, pivot));
-        self.last = (equations.clone(), count);
-        scene.prior.add_start(&mut equations, scene.picture, &self.pose, center_mm);
+        if let Some(look) = surface {
+            let seen = (look, scene.model);
+            pulls += add_surface(&mut equations, &scene.sight.picture, seen, about, SURFACE_SHARE);
+        }
+        scene.prior.add_pins(&mut equations, &scene.sight.picture, about);
+        self.last = Evidence { equations: equations.clone(), pulls, outward };
+        scene.prior.add_start(&mut equations, &scene.sight.picture, &self.pose, center_mm);
         let Some(step) = solve(&equations.h, &equations.g.map(|g| -g)) else { return false };
         let moved = moved_about(&self.pose, pivot, &step);
         if !is_before_camera(&moved, scene.model) {
@@ -214,4 +238,11 @@ impl Refinement {
         self.pose = moved;
         true
     }
+}
+
+/// A few times what is usual among the measurements: near the end half a pixel more than that is another edge.
+fn coverage_gate_px(found: &[Pull]) -> f64 {
+    let mut offsets: Vec<f64> = found.iter().map(|pull| pull.offset_px.abs()).collect();
+    offsets.sort_by(f64::total_cmp);
+    offsets.get(offsets.len() / 2).map_or(2.0, |median| (5.0 * median).clamp(0.3, 2.0))
 }

@@ -1,0 +1,185 @@
+//! Where a start may really belong, before anything is refined.
+//!
+//! Refinements from many starts end in the same few places: colours that were learnt beside the object keep the pose there.
+//! So the outlines of a few views are first shifted, turned and scaled over a small copy of the picture, without drawing
+//! anything anew, and each place is rated by the edges under it and by how different the colours on its two sides are.
+
+use glam::{DVec2, DVec3};
+
+use super::SnapReach;
+use super::look::{Density, Look};
+use super::palette::COLORS;
+use super::picture::Picture;
+use super::prior::Prior;
+use super::sight::Sight;
+use crate::math::{Pose, rotation_from_rotation_vector};
+use crate::solve::contour::{ContourModel, ContourPoint, EdgeKind};
+
+/// How far is looked about the start.
+struct Reach {
+    shift_px: f64,
+    /// To either side, as a part of the distance, and about the view ray.
+    depth: f64,
+    roll_rad: f64,
+    /// About axes across the view ray: each ring of views is turned so far.
+    rings_rad: &'static [f64],
+}
+
+const NEAR: Reach = Reach { shift_px: 13.0, depth: 0.04, roll_rad: 0.1, rings_rad: &[0.14] };
+const WIDE: Reach = Reach { shift_px: 26.0, depth: 0.07, roll_rad: 0.25, rings_rad: &[0.23, 0.115] };
+/// Views of a near and of a wide ring.
+const VIEWS_PER_RING: [usize; 2] = [4, 8];
+/// Pins say where the object is: then no farther than this is looked.
+const SHIFT_WITH_PINS_PX: f64 = 4.0;
+/// Between tried places, in pixels of the small copy: an edge is two of them wide there.
+const STEP_PX: i32 = 2;
+/// Colours are looked at so far from the outline on either side, in pixels of the small copy.
+const BESIDE_PX: [f64; 3] = [1.5, 2.5, 4.0];
+/// Nearer than this to the picture's border a point is not looked at.
+const BORDER_PX: i32 = 5;
+/// Of the outline's points; with fewer in the picture a place is not rated.
+const SMALLEST_PART: f32 = 0.6;
+const FEWEST_POINTS: usize = 12;
+
+/// Goes through the views, one at a time.
+#[derive(Debug, Clone)]
+pub struct Search {
+    /// About the object's middle, from the start.
+    turns: Vec<DVec3>,
+    next: usize,
+    /// The best place of each view, with its rating.
+    found: Vec<(f32, Pose)>,
+}
+
+impl Search {
+    pub fn new(reach: SnapReach) -> Self {
+        let mut turns = vec![DVec3::ZERO];
+        for &ring_rad in of(reach).rings_rad {
+            let count = VIEWS_PER_RING[usize::from(reach == SnapReach::Wide)];
+            turns.extend((0..count).map(|k| {
+                let direction = DVec2::from_angle(std::f64::consts::TAU * k as f64 / count as f64);
+                direction.extend(0.0) * ring_rad
+            }));
+        }
+        Self { turns, next: 0, found: Vec::new() }
+    }
+
+    /// How many steps it takes in all.
+    pub fn steps(&self) -> u32 {
+        self.turns.len() as u32
+    }
+
+    pub fn is_done(&self) -> bool {
+        self.next >= self.turns.len()
+    }
+
+    /// Looks at the next view.
+    pub fn advance(&mut self, sight: &Sight, model: &ContourModel, prior: &Prior) {
+        if let Some(turn) = self.turns.get(self.next) {
+            self.found.extend(best_place(sight, model, prior, *turn));
+        }
+        self.next += 1;
+    }
+
+    /// The most promising poses, best first; the start alone where no outline can be seen.
+    pub fn best(&mut self, count: usize, prior: &Prior) -> Vec<Pose> {
+        self.found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let best: Vec<Pose> = self.found.iter().take(count).map(|(_, pose)| *pose).collect();
+        if best.is_empty() { vec![prior.start] } else { best }
+    }
+}
+
+fn of(reach: SnapReach) -> &'static Reach {
+    match reach {
+        SnapReach::Near => &NEAR,
+        SnapReach::Wide => &WIDE,
+    }
+}
+
+fn best_place(sight: &Sight, model: &ContourModel, prior: &Prior, turn: DVec3) -> Option<(f32, Pose)> {
+    let (picture, reach) = (&sight.picture, of(prior.reach));
+    let center = prior.start.transform_point(model.center_mm());
+    let middle = picture.camera.project(center)?;
+    let view = Pose::rotation_about(center, rotation_from_rotation_vector(turn)) * prior.start;
+    let look = Look::at(sight, model, &view, Density::Coarse);
+    let outline: Vec<&ContourPoint> =
+        look.points.iter().filter(|point| point.kind == EdgeKind::Outline).collect();
+    if outline.len() < FEWEST_POINTS {
+        return None;
+    }
+    let has_pins = prior.pins.iter().filter(|pin| pin.enabled).count() > 1;
+    let shift_px = if has_pins { SHIFT_WITH_PINS_PX } else { reach.shift_px } / picture.photo_px;
+    let shifts = (shift_px / f64::from(STEP_PX)).ceil() as i32;
+    let mut best: Option<(f32, Pose)> = None;
+    for (roll, scale) in
+        [-1.0, 0.0, 1.0].into_iter().flat_map(|roll| [-1.0, 0.0, 1.0].map(|scale| (roll, scale)))
+    {
+        let (roll_rad, factor) = (reach.roll_rad * roll, 1.0 + reach.depth * scale);
+        let turn = DVec2::from_angle(roll_rad);
+        let probe = |point: &&ContourPoint| {
+            let place = middle + turn.rotate(point.pixel - middle) * factor;
+            Probe::new(picture, place, turn.rotate(point.normal))
+        };
+        let probes: Vec<Probe> = outline.iter().map(probe).collect();
+        for (x, y) in (-shifts..=shifts).flat_map(|y| (-shifts..=shifts).map(move |x| (x, y))) {
+            let rating = rate(picture, &probes, (x * STEP_PX, y * STEP_PX));
+            if best.as_ref().is_none_or(|(most, _)| rating > *most) {
+                let pixel = middle + DVec2::new(f64::from(x), f64::from(y)) * f64::from(STEP_PX);
+                let place = picture.camera.unproject(pixel) * (center.z / factor);
+                let rolled = rotation_from_rotation_vector(center.normalize_or(DVec3::Z) * roll_rad);
+                best =
+                    Some((rating, (Pose::rotation_about(center, rolled) * view).translated(place - center)));
+            }
+        }
+    }
+    best
+}
+
+/// A point of an outline in whole pixels, which can be shifted without looking at anything again.
+struct Probe {
+    x: i32,
+    y: i32,
+    normal: [f32; 2],
+    /// From its pixel's number to those beside the outline.
+    inside: [i32; 3],
+    outside: [i32; 3],
+}
+
+impl Probe {
+    fn new(picture: &Picture, place: DVec2, normal: DVec2) -> Self {
+        let whole = |place: DVec2| [place.x.round() as i32, place.y.round() as i32];
+        let [x, y] = whole(place);
+        let beside = |side: f64| {
+            BESIDE_PX.map(|distance| {
+                let [there_x, there_y] = whole(place + normal * (side * distance));
+                (there_y - y) * picture.width as i32 + there_x - x
+            })
+        };
+        Self { x, y, normal: normal.as_vec2().to_array(), inside: beside(-1.0), outside: beside(1.0) }
+    }
+}
+
+/// From 0 to 2: the edges under the outline, and how little the colours on its two sides have in common (Bhattacharyya).
+fn rate(picture: &Picture, probes: &[Probe], (right, down): (i32, i32)) -> f32 {
+    let (width, height) = (picture.width as i32, picture.height as i32);
+    let (mut inside, mut outside) = ([0.0_f32; COLORS], [0.0_f32; COLORS]);
+    let (mut edges, mut count) = (0.0_f32, 0.0_f32);
+    for probe in probes {
+        let (x, y) = (probe.x + right, probe.y + down);
+        if x < BORDER_PX || y < BORDER_PX || x >= width - BORDER_PX || y >= height - BORDER_PX {
+            continue;
+        }
+        let index = y * width + x;
+        edges += picture.edge_at(index as usize, probe.normal);
+        count += 1.0;
+        for k in 0..BESIDE_PX.len() {
+            inside[picture.label((index + probe.inside[k]) as usize)] += 1.0;
+            outside[picture.label((index + probe.outside[k]) as usize)] += 1.0;
+        }
+    }
+    if count < SMALLEST_PART * probes.len() as f32 {
+        return 0.0;
+    }
+    let common: f32 = inside.iter().zip(&outside).map(|(a, b)| (a * b).sqrt()).sum();
+    edges / count + 1.0 - common / (BESIDE_PX.len() as f32 * count)
+}
