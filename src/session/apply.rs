@@ -102,6 +102,10 @@ impl Session {
                 self.drag_pin((photo, object), pin, pixel, now_ms)
             }
             Command::EditPins(change) => self.edit_pins(change, now_ms),
+            Command::NoteFitScores { photo, object, scores } => {
+                self.note_fit_scores((photo, object), scores);
+                Ok(Vec::new())
+            }
             Command::TakeSnap { photo, object, camera_from_object, covariance } => {
                 self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
                 self.note_snap((photo, object), covariance.map(|covariance| *covariance));

@@ -127,6 +127,13 @@ pub enum Command {
     },
     /// Changes the selected pose's pins; the pose follows.
     EditPins(PinChange),
+    /// How well the photo supports the poses that a pose's pins allow, from 0 to 1; `None` where too little of the object is in
+    /// it. Nothing of the scene changes.
+    NoteFitScores {
+        photo: PhotoId,
+        object: ObjectId,
+        scores: Vec<(Pose, Option<f64>)>,
+    },
     /// The pose that the photo supports best near the present one.
     TakeSnap {
         photo: PhotoId,

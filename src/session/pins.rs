@@ -356,6 +356,7 @@ fn checked(pin: &Pin) -> Result<(), CommandError> {
     is_good.then_some(()).ok_or_else(|| CommandError::Failed("a pin needs finite numbers".to_owned()))
 }
 
-fn is_same(a: &Pose, b: &Pose) -> bool {
+/// Are two poses one, but for where a solver stopped?
+pub(super) fn is_same(a: &Pose, b: &Pose) -> bool {
     a.angle_to(b) < SAME_POSE_RAD && a.translation_mm.distance(b.translation_mm) < SAME_POSE_MM
 }

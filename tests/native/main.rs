@@ -16,6 +16,7 @@ mod evaluate;
 mod export;
 mod export_dialog;
 mod gestures;
+mod ghosts;
 mod gpu_and_cpu;
 mod images_corpus;
 mod latex;
