@@ -16,7 +16,7 @@ use crate::scene::{
 };
 use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
 use crate::solve::snap::SnapReach;
-use crate::solve::{TwistCovariance, Uncertainty};
+use crate::solve::{FreeTurns, TwistCovariance, Uncertainty};
 
 /// A pose's place: one object in one photo.
 type Target = (PhotoId, ObjectId);
@@ -77,7 +77,8 @@ impl Session {
 
     fn new_report(&self, target: Target, annotation: &Annotation) -> Option<PinReport> {
         let camera = self.scene.photo(target.0)?.camera;
-        let mesh = &self.scene.object(target.1)?.mesh.mesh;
+        let object = self.scene.object(target.1)?;
+        let sphere = object.mesh.mesh.sphere();
         let (pins, pose) = (&annotation.pins, &annotation.camera_from_object);
         if pins.is_empty() {
             return None;
@@ -93,8 +94,9 @@ impl Session {
             is_solved: solution.as_ref().is_some_and(|solution| is_same(&solution.camera_from_object, pose)),
             covariance: solution.as_ref().and_then(|solution| solution.covariance),
             uncertainty: solution.as_ref().and_then(|solution| {
-                let center = mesh.sphere().center;
-                Some(Uncertainty::of(&solution.covariance?, &solution.camera_from_object, center))
+                let pose = &solution.camera_from_object;
+                let free = FreeTurns::of(&object.symmetries, pose, sphere.center, sphere.radius);
+                Some(Uncertainty::of(&solution.covariance?.without(&free), pose, sphere.center))
             }),
             misclicks: solution.as_ref().map_or_else(Vec::new, |solution| solution.misclicks.clone()),
             advice: solution.as_ref().map_or_else(Vec::new, |solution| solution.advice.clone()),
