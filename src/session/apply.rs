@@ -112,7 +112,9 @@ impl Session {
                 self.snapped_revision = Some(self.revision);
                 Ok(Vec::new())
             }
-            Command::TakeSnaps(poses) => self.take_snaps(poses, now_ms),
+            Command::TakeSnaps { snaps, summary, least_sure } => {
+                self.take_snaps(snaps, (summary, least_sure), now_ms)
+            }
             Command::BeginGesture(label) => {
                 self.begin_gesture(label);
                 Ok(Vec::new())

@@ -143,7 +143,12 @@ pub enum Command {
         covariance: Option<Box<TwistCovariance>>,
     },
     /// The same for several poses, as one step; those that are locked or confirmed by now stay.
-    TakeSnaps(Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>),
+    TakeSnaps {
+        snaps: Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>,
+        /// For the log, with the pose that is to be looked at first.
+        summary: Arc<str>,
+        least_sure: (PhotoId, ObjectId),
+    },
     BeginGesture(&'static str),
     /// A pose within a gesture.
     Drag {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::apply::Applied;
-use super::{CommandError, Effect, Notice, PinChange, Session};
+use super::{CommandError, Effect, LogEntry, Notice, PinChange, Session};
 use crate::formats::export::safe_file_name;
 use crate::formats::write_pins;
 use crate::math::Pose;
@@ -257,6 +257,7 @@ impl Session {
     pub(super) fn take_snaps(
         &mut self,
         mut snaps: Vec<(Target, Pose, Option<TwistCovariance>)>,
+        (summary, least_sure): (Arc<str>, Target),
         now_ms: f64,
     ) -> Applied {
         snaps.retain(|(target, ..)| self.check_movable(*target).is_ok());
@@ -264,7 +265,12 @@ impl Session {
             return Ok(Vec::new());
         }
         let poses = snaps.iter().map(|(target, pose, _)| (*target, *pose)).collect();
-        let effects = self.change_poses("Snap on all photos", poses, PoseSource::Snap, now_ms)?;
+        let label = "Snap on all photos";
+        let effects = self.change_poses(label, poses, PoseSource::Snap, now_ms)?;
+        // After the lines of the poses, so that it is the first to be read.
+        if let Some(entry) = self.log_entry(least_sure, label) {
+            self.log.push(LogEntry { summary: Some(summary), ..entry });
+        }
         snaps.into_iter().for_each(|(target, _, covariance)| self.note_snap(target, covariance));
         Ok(effects)
     }

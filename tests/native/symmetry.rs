@@ -151,11 +151,21 @@ fn several_snaps_are_one_step_and_leave_what_was_confirmed() {
     assert_eq!(asked, [Effect::SnapAll(vec![(photo, object)])]);
 
     let snapped = posed.translated(DVec3::Y);
-    let take = || Command::TakeSnaps(vec![((photo, object), snapped, None)]);
+    let take = || Command::TakeSnaps {
+        snaps: vec![((photo, object), snapped, None)],
+        summary: "Snapped 1 of 1 poses".into(),
+        least_sure: (photo, object),
+    };
     session.apply(take(), NOW_MS).unwrap();
     let pose = |session: &Session| session.selected_annotation().unwrap().2.camera_from_object;
     assert_eq!(pose(&session), snapped);
-    assert_eq!(session.log().last().unwrap().label, "Snap on all photos");
+    let [.., of_pose, of_all] = session.log() else { panic!("two lines") };
+    assert_eq!((of_pose.label, of_pose.summary.as_deref()), ("Snap on all photos", None));
+    assert_eq!(
+        (of_all.label, of_all.summary.as_deref()),
+        ("Snap on all photos", Some("Snapped 1 of 1 poses"))
+    );
+    assert_eq!((of_all.photo, of_all.object, of_all.camera_from_object), (photo, object, snapped));
     session.apply(Command::Run(CommandId::Undo), NOW_MS).unwrap();
     assert_eq!(pose(&session), posed);
 
