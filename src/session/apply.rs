@@ -47,6 +47,7 @@ impl Session {
             }
 
             Command::SetCamera { photo, camera, origin } => self.set_camera(photo, camera, origin, now_ms),
+            Command::SetFocal { photo, fx } => self.set_focal(photo, fx),
             Command::ResetCamera(photo) => self.reset_camera(photo, now_ms),
             Command::EditPhoto(photo, change) => self.edit_photo(photo, change, now_ms),
             Command::EditObject(object, change) => self.edit_object(object, change, now_ms),

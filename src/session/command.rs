@@ -51,6 +51,12 @@ pub enum Command {
         camera: Intrinsics,
         origin: CameraOrigin,
     },
+    /// A focal length by eye, `fx` in pixels: `fy` goes with it, and each object of the photo moves along the view so that it
+    /// keeps its place and its size in the picture. Within a gesture it goes from where that began.
+    SetFocal {
+        photo: PhotoId,
+        fx: f64,
+    },
     /// Back to the last camera that was not typed: from a file, else the photo's EXIF data, else the assumed one.
     ResetCamera(PhotoId),
     EditPhoto(PhotoId, PhotoChange),

@@ -12,6 +12,7 @@ mod edit;
 mod effect;
 mod export;
 mod fits;
+mod focal;
 mod history;
 mod import;
 mod log;

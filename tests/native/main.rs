@@ -15,6 +15,7 @@ mod documents;
 mod evaluate;
 mod export;
 mod export_dialog;
+mod focal;
 mod gestures;
 mod ghosts;
 mod gpu_and_cpu;
