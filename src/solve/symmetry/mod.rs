@@ -6,6 +6,7 @@
 //! surface is from the surface.
 
 mod axes;
+mod pieces;
 mod surface;
 
 use crate::mesh::{Bvh, Mesh};
