@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::PinPose;
-use crate::math::{Intrinsics, Pose};
+use crate::math::{Intrinsics, Pose, sort_short};
 use crate::photo::Pixels;
 use crate::scene::{ObjectId, PhotoId, Sha256};
 use crate::session::{Command, RankedFit};
@@ -72,7 +72,7 @@ impl PinPose {
     fn fits_to_rank(&self) -> Option<Asked> {
         let mut fits = self.session.ranked_fits();
         // By number: their ranks change when they are scored.
-        fits.sort_unstable_by_key(|fit| fit.number);
+        sort_short(&mut fits, |a, b| a.number.cmp(&b.number));
         let (photo, object, _) = self.session.selected_annotation().filter(|_| !fits.is_empty())?;
         let scene = self.session.scene();
         let others = scene.objects_in(photo).filter(|(other, _)| other.id != object);

@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::pins::is_same;
-use crate::math::Pose;
+use crate::math::{Pose, sort_short};
 use crate::scene::{ObjectId, PhotoId};
 
 /// A pose that the pins allow, as it stands among the others.
@@ -51,7 +51,7 @@ impl Session {
             })
             .collect();
         let rank = |fit: &RankedFit| fit.score.unwrap_or(f64::NEG_INFINITY);
-        fits.sort_unstable_by(|a, b| rank(b).total_cmp(&rank(a)).then(a.number.cmp(&b.number)));
+        sort_short(&mut fits, |a, b| rank(b).total_cmp(&rank(a)));
         fits
     }
 
