@@ -15,6 +15,7 @@ use crate::formats::{
     Archive, Document, FileKind, FileWithCompanions, NamedFile, Parsed, PosesAs, classify,
     parse_text_or_archive, with_companions,
 };
+use crate::math::sort_short;
 use crate::mesh::Mesh;
 use crate::photo::{DepthPixels, Pixels, is_depth_like};
 use crate::platform::{self, FileBytes, PageReply, Saved, SavedAsset};
@@ -464,7 +465,7 @@ impl Load {
 
     /// Replies come in any order; files of one drop are taken by name.
     fn sort(&mut self) {
-        self.batch.photos.sort_by(|a: &Arc<PhotoAsset>, b| a.file_name.cmp(&b.file_name));
-        self.batch.meshes.sort_by(|a: &Arc<MeshAsset>, b| a.file_name.cmp(&b.file_name));
+        sort_short(&mut self.batch.photos, |a: &Arc<PhotoAsset>, b| a.file_name.cmp(&b.file_name));
+        sort_short(&mut self.batch.meshes, |a: &Arc<MeshAsset>, b| a.file_name.cmp(&b.file_name));
     }
 }

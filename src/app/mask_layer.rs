@@ -88,7 +88,7 @@ mod tests {
             bytes: Arc::from(&b""[..]),
             width: 2,
             height: 1,
-            exif_focal_px: None,
+            exif_focal: None,
         });
         let mask = Mask {
             id: MaskId(1),

@@ -11,6 +11,7 @@ mod depth_maps;
 mod effects;
 mod events;
 mod exporting;
+mod ghosts;
 mod input;
 mod jobs;
 mod kept;
@@ -61,6 +62,7 @@ pub struct PinPose {
     depth_maps: depth_maps::DepthMaps,
     exporting: exporting::Exporting,
     snapping: snapping::Snapping,
+    ghosts: ghosts::Ghosts,
     symmetries: symmetry::SymmetrySearch,
     motion: Option<motion::Motion>,
     building: building::Building,
@@ -116,6 +118,7 @@ impl PinPose {
             depth_maps: depth_maps::DepthMaps::default(),
             exporting: exporting::Exporting::default(),
             snapping: snapping::Snapping::default(),
+            ghosts: ghosts::Ghosts::default(),
             symmetries: symmetry::SymmetrySearch::default(),
             motion: None,
             building: building::Building::default(),
@@ -181,6 +184,7 @@ impl eframe::App for PinPose {
         self.make_pictures(ctx);
         self.tick_export();
         self.tick_snap();
+        self.tick_ghosts();
         self.tick_symmetries();
         self.tick_motion();
         self.tick_building();

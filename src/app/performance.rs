@@ -1,5 +1,6 @@
 //! What frames cost.
 
+use crate::math::sort_short;
 use std::collections::VecDeque;
 
 /// Frames over which the median is taken, at most.
@@ -26,7 +27,7 @@ impl Performance {
     /// The times that these fractions of the frames since the last call stayed below.
     pub fn take_cpu_ms<const COUNT: usize>(&mut self, fractions: [f64; COUNT]) -> [f64; COUNT] {
         let mut sorted: Vec<f32> = self.cpu_ms.drain(..).collect();
-        sorted.sort_by(f32::total_cmp);
+        sort_short(&mut sorted, f32::total_cmp);
         fractions.map(|fraction| {
             let index = (fraction * sorted.len() as f64) as usize;
             sorted.get(index.min(sorted.len().saturating_sub(1))).map_or(0.0, |&ms| f64::from(ms))

@@ -203,7 +203,7 @@ impl PinPose {
     }
 
     /// The photo's depth map, where it hides what is behind it.
-    fn depth_for_snap(&mut self, photo: PhotoId) -> Option<Arc<DepthInMm>> {
+    pub(super) fn depth_for_snap(&mut self, photo: PhotoId) -> Option<Arc<DepthInMm>> {
         let pixels = self.depth_of(photo)?;
         let mm_per_unit = self.session.scene().photo(photo)?.depth.as_ref()?.mm_per_unit;
         let mm = pixels.raw.iter().map(|&raw| (f64::from(raw) * mm_per_unit) as f32).collect();
@@ -219,7 +219,7 @@ impl PinPose {
     }
 
     /// Is what the solvers look at there, or known not to come? If not, it is sent for.
-    fn has_solver_mesh(&mut self, object: ObjectId) -> bool {
+    pub(super) fn has_solver_mesh(&mut self, object: ObjectId) -> bool {
         let Some(object) = self.session.scene().object(object) else { return true };
         let sha256 = object.mesh.sha256;
         if self.snapping.meshes.iter().any(|(known, _)| *known == sha256) {
@@ -233,7 +233,7 @@ impl PinPose {
     }
 
     /// `None` for a mesh without a surface.
-    fn contour_model(&self, object: ObjectId) -> Option<Arc<ContourModel>> {
+    pub(super) fn contour_model(&self, object: ObjectId) -> Option<Arc<ContourModel>> {
         let object = self.session.scene().object(object)?;
         let (_, mesh) = self.snapping.meshes.iter().find(|(known, _)| *known == object.mesh.sha256)?;
         let transform = DAffine3::from_mat4(object.mesh_from_file);

@@ -83,7 +83,7 @@ fn describe(file: &NamedFile, parsed: &Parsed, warnings: &[String]) -> Value {
                 "width": photo.width,
                 "height": photo.height,
                 "sha256": photo.sha256.to_string(),
-                "exif_focal_px": photo.exif_focal_px,
+                "exif_focal_px": photo.exif_focal.map(|exif| exif.focal_px),
             }),
         ),
         Parsed::Mesh(asset) => ("mesh", mesh_content(asset)),

@@ -111,10 +111,36 @@ fn is_one(value: &f32) -> bool {
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 enum CameraOriginEntry {
     AssumedFieldOfView,
-    Exif,
-    Pins { relative_sigma: f64 },
+    Exif {
+        #[serde(default, skip_serializing_if = "ExifSensorEntry::is_default")]
+        sensor: ExifSensorEntry,
+    },
+    Pins {
+        relative_sigma: f64,
+    },
+    Slider {
+        before_px: f64,
+    },
     Typed,
-    File { name: String },
+    File {
+        name: String,
+    },
+}
+
+/// How the size of the sensor is known that EXIF's millimetres need.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum ExifSensorEntry {
+    #[default]
+    Equivalent,
+    FocalPlane,
+    SensorTable,
+}
+
+impl ExifSensorEntry {
+    fn is_default(&self) -> bool {
+        *self == Self::Equivalent
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -107,7 +107,7 @@ pub fn read_photo(file: &NamedFile) -> Result<(PhotoAsset, crate::photo::Pixels)
         bytes: file.bytes.clone(),
         width: decoded.pixels.width,
         height: decoded.pixels.height,
-        exif_focal_px: decoded.exif_focal_px,
+        exif_focal: decoded.exif_focal,
     };
     Ok((asset, decoded.pixels))
 }
@@ -121,7 +121,7 @@ pub fn read_photo_header(file: &NamedFile) -> Result<PhotoAsset, FormatError> {
         bytes: file.bytes.clone(),
         width: header.width,
         height: header.height,
-        exif_focal_px: header.exif_focal_px,
+        exif_focal: header.exif_focal,
     })
 }
 

@@ -33,7 +33,7 @@ pub fn write_pose_text(pose: &Pose, style: PoseText) -> String {
 /// Reads a pose in any of these forms. What the text leaves out (a rotation or a translation alone) is taken from
 /// `present`. The second value is how far R was from a rotation, ‖RᵀR − I‖; it was projected onto SO(3).
 pub fn read_pose_text(text: &str, present: &Pose) -> Result<(Pose, f64), FormatError> {
-    let numbers = match serde_json::from_str::<Value>(text.trim()) {
+    let numbers = match serde_json::from_slice::<Value>(text.trim().as_bytes()) {
         Ok(Value::Object(object)) => numbers_of_object(&object)?,
         _ => numbers_in(text)?,
     };

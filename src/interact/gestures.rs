@@ -7,6 +7,7 @@ use super::object_drag::{FINE, ObjectDrag, depth_by_wheel, hit_to_move};
 use super::pin_drag::{PinDrag, half_pin};
 use super::viewpoint::{GroundDrag, Viewpoint};
 use super::{Button, Eye, PointerAction, PointerEvent, pick_along};
+use crate::math::sort_short;
 use crate::scene::{Look, ObjectId};
 use crate::session::{Command, Session, Tool};
 
@@ -319,7 +320,8 @@ impl Gestures {
             None if adds => Vec::new(),
             None => {
                 let mut selection = session.selection();
-                selection.sort_by_key(|id| Some(*id) == session.selected());
+                let is_first = |id: &ObjectId| Some(*id) == session.selected();
+                sort_short(&mut selection, |a, b| is_first(a).cmp(&is_first(b)));
                 if !selection.is_empty() {
                     self.deselected = selection;
                 }

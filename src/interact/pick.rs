@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::math::{ImageRect, Ray};
+use crate::math::{ImageRect, Ray, sort_short};
 use crate::scene::{ObjectId, PhotoId, Scene};
 
 /// A surface point under a pixel.
@@ -40,7 +40,7 @@ pub fn pick_along(scene: &Scene, photo: PhotoId, ray_camera: &Ray) -> Vec<Hit> {
         })
         .collect();
     let distance = |hit: &Hit| (hit.point_camera_mm - ray_camera.origin).dot(ray_camera.direction);
-    hits.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    sort_short(&mut hits, |a, b| distance(a).total_cmp(&distance(b)));
     hits
 }
 

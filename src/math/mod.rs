@@ -6,6 +6,7 @@
 mod bounds;
 mod camera;
 mod frames;
+mod order;
 mod pose;
 mod ray;
 mod rotation;
@@ -13,6 +14,7 @@ mod rotation;
 pub use bounds::{BoundingSphere, Bounds};
 pub use camera::{CameraError, Distortion, Intrinsics};
 pub use frames::{ImageRect, NEAR_MM, clip_from_camera};
+pub use order::sort_short;
 pub use pose::{Pose, PoseError, nearest_rotation, rotation_defect};
 pub use ray::Ray;
 pub use rotation::{

@@ -50,6 +50,7 @@ pub use search_tree::SearchTree;
 pub use simplify::simplified;
 pub use textures::MAX_TEXTURE_SIDE_PX;
 pub use unit::{FileUnit, MeshUnit, length_text};
+pub use weld::weld;
 pub use write::write_ply;
 
 /// A mesh with more triangles, or more vertices, than this is refused: beyond it a browser tab runs out of memory.

@@ -7,7 +7,7 @@ use glam::Vec3;
 ///
 /// Files split vertices along texture seams, and formats without shared vertices split all of them; shading should not
 /// show it.
-pub(super) fn weld(positions: &[Vec3]) -> (Vec<u32>, usize) {
+pub fn weld(positions: &[Vec3]) -> (Vec<u32>, usize) {
     const EMPTY: u32 = u32::MAX;
     let capacity = (positions.len() * 2).next_power_of_two();
     let mask = capacity - 1;

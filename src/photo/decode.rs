@@ -6,14 +6,12 @@ use image::metadata::Orientation;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageError, ImageReader, Limits};
 use thiserror::Error;
 
+use super::exif_focal::{ExifFocal, exif_focal};
 use super::kind::{PictureKind, picture_kind};
 use super::{DecodedPhoto, PhotoHeader, Pixels};
 
 /// Larger photos are refused: a decoded one would fill the memory of a tab.
 pub const MAX_PIXELS: u64 = 50_000_000;
-
-/// The width in millimetres of the 36 × 24 mm frame that EXIF's 35 mm equivalent focal length refers to.
-const FULL_FRAME_WIDTH_MM: f64 = 36.0;
 
 #[derive(Debug, Error)]
 pub enum PhotoError {
@@ -35,17 +33,17 @@ pub enum PhotoError {
 /// evenly: 65535 is white.
 pub fn decode(bytes: &[u8]) -> Result<DecodedPhoto, PhotoError> {
     let picture = Picture::open(bytes)?;
-    let exif_focal_px = picture.exif_focal_px();
+    let exif_focal = picture.exif_focal;
     let pixels = picture.decode()?.into_rgba8();
     let pixels = Pixels { width: pixels.width(), height: pixels.height(), rgba: pixels.into_raw() };
-    Ok(DecodedPhoto { pixels, exif_focal_px })
+    Ok(DecodedPhoto { pixels, exif_focal })
 }
 
 /// Reads what a photo's file says of itself, without its pixels: a thousand photos take a moment.
 pub fn read_header(bytes: &[u8]) -> Result<PhotoHeader, PhotoError> {
     let picture = Picture::open(bytes)?;
     let (width, height) = picture.upright_size();
-    Ok(PhotoHeader { width, height, exif_focal_px: picture.exif_focal_px() })
+    Ok(PhotoHeader { width, height, exif_focal: picture.exif_focal })
 }
 
 /// A picture's file whose header was read.
@@ -53,7 +51,7 @@ pub(super) struct Picture<D> {
     decoder: D,
     pub(super) format: &'static str,
     orientation: Orientation,
-    exif_focal_35mm: Option<f64>,
+    exif_focal: Option<ExifFocal>,
 }
 
 impl<'a> Picture<Box<dyn ImageDecoder + 'a>> {
@@ -75,8 +73,9 @@ impl<'a> Picture<Box<dyn ImageDecoder + 'a>> {
             return Err(PhotoError::TooLarge { width, height });
         }
         let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-        let exif_focal_35mm = decoder.exif_metadata().ok().flatten().and_then(focal_35mm);
-        Ok(Self { decoder, format: format_name, orientation, exif_focal_35mm })
+        let exif = decoder.exif_metadata().ok().flatten();
+        let exif_focal = exif.and_then(|exif| exif_focal(exif, (width, height)));
+        Ok(Self { decoder, format: format_name, orientation, exif_focal })
     }
 
     /// Width and height, once the picture stands upright.
@@ -89,13 +88,6 @@ impl<'a> Picture<Box<dyn ImageDecoder + 'a>> {
             | Orientation::Rotate270FlipH => (height, width),
             _ => (width, height),
         }
-    }
-
-    /// The equivalent focal length is defined along the sensor's long side, however the camera was held.
-    fn exif_focal_px(&self) -> Option<f64> {
-        let (width, height) = self.decoder.dimensions();
-        let long_side_px = f64::from(width.max(height));
-        self.exif_focal_35mm.map(|focal_mm| focal_mm / FULL_FRAME_WIDTH_MM * long_side_px)
     }
 
     /// What the file holds, before it is expanded to whole bytes.
@@ -118,13 +110,6 @@ fn refused(format: &'static str, error: ImageError) -> PhotoError {
         ImageError::Unsupported(_) => PhotoError::Unsupported { format, reason },
         _ => PhotoError::Damaged { format, reason },
     }
-}
-
-/// EXIF's `FocalLengthIn35mmFilm`, where it is there and not zero ("unknown").
-fn focal_35mm(exif: Vec<u8>) -> Option<f64> {
-    let exif = exif::Reader::new().read_raw(exif).ok()?;
-    let field = exif.get_field(exif::Tag::FocalLengthIn35mmFilm, exif::In::PRIMARY)?;
-    field.value.get_uint(0).filter(|&focal_mm| focal_mm > 0).map(f64::from)
 }
 
 #[cfg(test)]

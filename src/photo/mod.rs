@@ -3,6 +3,7 @@
 mod decode;
 mod depth;
 mod encode;
+mod exif_focal;
 mod kind;
 mod mip;
 mod stored;
@@ -12,6 +13,7 @@ mod thumbnail;
 pub use decode::{MAX_PIXELS, PhotoError, decode, read_header};
 pub use depth::{DepthPixels, decode_depth, is_depth_like};
 pub use encode::{png_gray8, png_gray16, png_rgba};
+pub use exif_focal::{ExifFocal, ExifFocalSource};
 pub use kind::{foreign_kind, is_picture};
 pub use mip::half_size;
 pub use stored::{is_grey, plain_extension};
@@ -31,8 +33,8 @@ pub struct Pixels {
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecodedPhoto {
     pub pixels: Pixels,
-    /// The focal length in pixels that the EXIF data gives by its 35 mm equivalent.
-    pub exif_focal_px: Option<f64>,
+    /// The focal length that the EXIF data gives.
+    pub exif_focal: Option<ExifFocal>,
 }
 
 /// What [`read_header`] returns.
@@ -42,5 +44,5 @@ pub struct PhotoHeader {
     pub width: u32,
     pub height: u32,
     /// As in [`DecodedPhoto`].
-    pub exif_focal_px: Option<f64>,
+    pub exif_focal: Option<ExifFocal>,
 }

@@ -10,6 +10,7 @@ use sha2::Digest;
 use super::CameraOrigin;
 use crate::math::Intrinsics;
 use crate::mesh::{Bvh, DrawnAhead, FileUnit, Mesh, MeshError, SearchTree};
+use crate::photo::ExifFocal;
 
 /// The field of view that is assumed where a photo says nothing of its lens.
 const ASSUMED_FIELD_OF_VIEW_RAD: f64 = std::f64::consts::FRAC_PI_3;
@@ -69,14 +70,16 @@ pub struct PhotoAsset {
     /// In pixels, upright.
     pub width: u32,
     pub height: u32,
-    pub exif_focal_px: Option<f64>,
+    pub exif_focal: Option<ExifFocal>,
 }
 
 impl PhotoAsset {
     /// The camera to start with, and why.
     pub fn guessed_camera(&self) -> (Intrinsics, CameraOrigin) {
-        match self.exif_focal_px {
-            Some(focal_px) => (Intrinsics::from_focal(focal_px, self.width, self.height), CameraOrigin::Exif),
+        match self.exif_focal {
+            Some(ExifFocal { focal_px, source }) => {
+                (Intrinsics::from_focal(focal_px, self.width, self.height), CameraOrigin::Exif(source))
+            }
             None => (
                 Intrinsics::from_horizontal_fov(ASSUMED_FIELD_OF_VIEW_RAD, self.width, self.height),
                 CameraOrigin::AssumedFieldOfView,

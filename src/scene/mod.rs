@@ -19,6 +19,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::math::{Intrinsics, Pose};
+use crate::photo::ExifFocalSource;
 
 pub use annotation::{Annotation, AnnotationState, PoseSource};
 pub use asset::{CompanionFile, MeshAsset, PhotoAsset, Sha256};
@@ -45,7 +46,7 @@ pub struct Photo {
     pub asset: Arc<PhotoAsset>,
     pub camera: Intrinsics,
     pub camera_origin: CameraOrigin,
-    /// The last camera that was not typed: what a reset goes back to.
+    /// The last camera that was neither typed nor set by eye: what a reset goes back to.
     pub given_camera: (Intrinsics, CameraOrigin),
     /// Its pixels are shown; the meshes over it have their own.
     pub visible: bool,
@@ -61,11 +62,15 @@ pub struct Photo {
 pub enum CameraOrigin {
     /// 60° horizontal field of view.
     AssumedFieldOfView,
-    /// The 35 mm equivalent focal length in the photo's EXIF data.
-    Exif,
+    /// The focal length in the photo's EXIF data, and what it says of the sensor.
+    Exif(ExifFocalSource),
     /// The focal length that fits the pins; one standard deviation of it, as a part of it.
     Pins {
         relative_sigma: f64,
+    },
+    /// The focal length that somebody set by eye, with the depths that go with it; before that it was this, in pixels along x.
+    Slider {
+        before_px: f64,
     },
     Typed,
     File(String),
@@ -73,7 +78,7 @@ pub enum CameraOrigin {
 
 impl CameraOrigin {
     pub fn is_guess(&self) -> bool {
-        matches!(self, Self::AssumedFieldOfView | Self::Exif | Self::Pins { .. })
+        matches!(self, Self::AssumedFieldOfView | Self::Exif(_) | Self::Pins { .. } | Self::Slider { .. })
     }
 }
 
@@ -340,7 +345,7 @@ impl Scene {
         let Some(photo) = self.photo_mut(id) else { return };
         let changed = photo.camera != camera;
         photo.camera = camera;
-        if origin != CameraOrigin::Typed {
+        if !matches!(origin, CameraOrigin::Typed | CameraOrigin::Slider { .. }) {
             photo.given_camera = (camera, origin.clone());
         }
         photo.camera_origin = origin;

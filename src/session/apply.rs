@@ -47,6 +47,7 @@ impl Session {
             }
 
             Command::SetCamera { photo, camera, origin } => self.set_camera(photo, camera, origin, now_ms),
+            Command::SetFocal { photo, fx } => self.set_focal(photo, fx),
             Command::ResetCamera(photo) => self.reset_camera(photo, now_ms),
             Command::EditPhoto(photo, change) => self.edit_photo(photo, change, now_ms),
             Command::EditObject(object, change) => self.edit_object(object, change, now_ms),
@@ -102,13 +103,19 @@ impl Session {
                 self.drag_pin((photo, object), pin, pixel, now_ms)
             }
             Command::EditPins(change) => self.edit_pins(change, now_ms),
+            Command::NoteFitScores { photo, object, scores } => {
+                self.note_fit_scores((photo, object), scores);
+                Ok(Vec::new())
+            }
             Command::TakeSnap { photo, object, camera_from_object, covariance } => {
                 self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
                 self.note_snap((photo, object), covariance.map(|covariance| *covariance));
                 self.snapped_revision = Some(self.revision);
                 Ok(Vec::new())
             }
-            Command::TakeSnaps(poses) => self.take_snaps(poses, now_ms),
+            Command::TakeSnaps { snaps, summary, least_sure } => {
+                self.take_snaps(snaps, (summary, least_sure), now_ms)
+            }
             Command::BeginGesture(label) => {
                 self.begin_gesture(label);
                 Ok(Vec::new())

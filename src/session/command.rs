@@ -51,6 +51,12 @@ pub enum Command {
         camera: Intrinsics,
         origin: CameraOrigin,
     },
+    /// A focal length by eye, `fx` in pixels: `fy` goes with it, and each object of the photo moves along the view so that it
+    /// keeps its place and its size in the picture. Within a gesture it goes from where that began.
+    SetFocal {
+        photo: PhotoId,
+        fx: f64,
+    },
     /// Back to the last camera that was not typed: from a file, else the photo's EXIF data, else the assumed one.
     ResetCamera(PhotoId),
     EditPhoto(PhotoId, PhotoChange),
@@ -127,6 +133,13 @@ pub enum Command {
     },
     /// Changes the selected pose's pins; the pose follows.
     EditPins(PinChange),
+    /// How well the photo supports the poses that a pose's pins allow, from 0 to 1; `None` where too little of the object is in
+    /// it. Nothing of the scene changes.
+    NoteFitScores {
+        photo: PhotoId,
+        object: ObjectId,
+        scores: Vec<(Pose, Option<f64>)>,
+    },
     /// The pose that the photo supports best near the present one.
     TakeSnap {
         photo: PhotoId,
@@ -136,7 +149,12 @@ pub enum Command {
         covariance: Option<Box<TwistCovariance>>,
     },
     /// The same for several poses, as one step; those that are locked or confirmed by now stay.
-    TakeSnaps(Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>),
+    TakeSnaps {
+        snaps: Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>,
+        /// For the log, with the pose that is to be looked at first.
+        summary: Arc<str>,
+        least_sure: (PhotoId, ObjectId),
+    },
     BeginGesture(&'static str),
     /// A pose within a gesture.
     Drag {

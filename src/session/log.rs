@@ -21,6 +21,8 @@ pub struct LogEntry {
     pub label: &'static str,
     pub source: PoseSource,
     pub camera_from_object: Pose,
+    /// Of what was done to many poses at once, in place of whose pose this is: where to look first.
+    pub summary: Option<Arc<str>>,
 }
 
 /// The lines, oldest first. Clearing hides them, so that undo can bring them back.

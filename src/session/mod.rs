@@ -11,6 +11,8 @@ mod depth;
 mod edit;
 mod effect;
 mod export;
+mod fits;
+mod focal;
 mod history;
 mod import;
 mod log;
@@ -30,6 +32,7 @@ pub use command::{Command, CommandError, MaskChange, ObjectChange, PhotoChange, 
 pub use dataset::DatasetImport;
 pub use depth::with_depth_changed;
 pub use effect::{Answer, Effect, Notice, Pick, PictureKind, PictureRequest, Question, Severity};
+pub use fits::RankedFit;
 pub use history::MAX_BYTES as HISTORY_BYTES;
 pub use import::{Batch, Opening};
 pub use log::LogEntry;
@@ -62,6 +65,7 @@ pub struct Session {
     /// After a snap, until anything else changes.
     snapped_revision: Option<u64>,
     pin_report: pins::ReportCache,
+    fit_scores: fits::FitScores,
     /// Of poses that a snap has set, with the pose that it is of.
     snap_covariances: BTreeMap<(PhotoId, ObjectId), (Pose, TwistCovariance)>,
     history: History,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::apply::Applied;
-use super::{CommandError, Effect, Notice, PinChange, Session};
+use super::{CommandError, Effect, LogEntry, Notice, PinChange, Session};
 use crate::formats::export::safe_file_name;
 use crate::formats::write_pins;
 use crate::math::Pose;
@@ -16,7 +16,7 @@ use crate::scene::{
 };
 use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
 use crate::solve::snap::SnapReach;
-use crate::solve::{TwistCovariance, Uncertainty};
+use crate::solve::{FreeTurns, TwistCovariance, Uncertainty};
 
 /// A pose's place: one object in one photo.
 type Target = (PhotoId, ObjectId);
@@ -77,7 +77,8 @@ impl Session {
 
     fn new_report(&self, target: Target, annotation: &Annotation) -> Option<PinReport> {
         let camera = self.scene.photo(target.0)?.camera;
-        let mesh = &self.scene.object(target.1)?.mesh.mesh;
+        let object = self.scene.object(target.1)?;
+        let sphere = object.mesh.mesh.sphere();
         let (pins, pose) = (&annotation.pins, &annotation.camera_from_object);
         if pins.is_empty() {
             return None;
@@ -93,8 +94,9 @@ impl Session {
             is_solved: solution.as_ref().is_some_and(|solution| is_same(&solution.camera_from_object, pose)),
             covariance: solution.as_ref().and_then(|solution| solution.covariance),
             uncertainty: solution.as_ref().and_then(|solution| {
-                let center = mesh.sphere().center;
-                Some(Uncertainty::of(&solution.covariance?, &solution.camera_from_object, center))
+                let pose = &solution.camera_from_object;
+                let free = FreeTurns::of(&object.symmetries, pose, sphere.center, sphere.radius);
+                Some(Uncertainty::of(&solution.covariance?.without(&free), pose, sphere.center))
             }),
             misclicks: solution.as_ref().map_or_else(Vec::new, |solution| solution.misclicks.clone()),
             advice: solution.as_ref().map_or_else(Vec::new, |solution| solution.advice.clone()),
@@ -255,6 +257,7 @@ impl Session {
     pub(super) fn take_snaps(
         &mut self,
         mut snaps: Vec<(Target, Pose, Option<TwistCovariance>)>,
+        (summary, least_sure): (Arc<str>, Target),
         now_ms: f64,
     ) -> Applied {
         snaps.retain(|(target, ..)| self.check_movable(*target).is_ok());
@@ -262,7 +265,12 @@ impl Session {
             return Ok(Vec::new());
         }
         let poses = snaps.iter().map(|(target, pose, _)| (*target, *pose)).collect();
-        let effects = self.change_poses("Snap on all photos", poses, PoseSource::Snap, now_ms)?;
+        let label = "Snap on all photos";
+        let effects = self.change_poses(label, poses, PoseSource::Snap, now_ms)?;
+        // After the lines of the poses, so that it is the first to be read.
+        if let Some(entry) = self.log_entry(least_sure, label) {
+            self.log.push(LogEntry { summary: Some(summary), ..entry });
+        }
         snaps.into_iter().for_each(|(target, _, covariance)| self.note_snap(target, covariance));
         Ok(effects)
     }
@@ -356,6 +364,7 @@ fn checked(pin: &Pin) -> Result<(), CommandError> {
     is_good.then_some(()).ok_or_else(|| CommandError::Failed("a pin needs finite numbers".to_owned()))
 }
 
-fn is_same(a: &Pose, b: &Pose) -> bool {
+/// Are two poses one, but for where a solver stopped?
+pub(super) fn is_same(a: &Pose, b: &Pose) -> bool {
     a.angle_to(b) < SAME_POSE_RAD && a.translation_mm.distance(b.translation_mm) < SAME_POSE_MM
 }

@@ -304,7 +304,7 @@ impl Session {
         }
     }
 
-    fn log_entry(&self, (photo, object): Target, label: &'static str) -> Option<LogEntry> {
+    pub(super) fn log_entry(&self, (photo, object): Target, label: &'static str) -> Option<LogEntry> {
         let annotation = self.scene.annotation(photo, object)?;
         Some(LogEntry {
             time_ms: annotation.changed_at_ms,
@@ -315,6 +315,7 @@ impl Session {
             label,
             source: annotation.source,
             camera_from_object: annotation.camera_from_object,
+            summary: None,
         })
     }
 }

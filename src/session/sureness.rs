@@ -6,7 +6,9 @@ use super::Session;
 use crate::math::{Pose, Ray};
 use crate::scene::{CameraOrigin, Object, ObjectId, PhotoId, PoseSource};
 use crate::solve::pins::PinOptions;
-use crate::solve::{Tolerances, TwistCovariance, Uncertainty, Weakest, most_helpful_point, weakest};
+use crate::solve::{
+    FreeTurns, Tolerances, TwistCovariance, Uncertainty, Weakest, most_helpful_point, weakest,
+};
 
 /// Points of the mesh that are thought of as the next pin.
 const MOST_CANDIDATES: usize = 300;
@@ -19,6 +21,8 @@ pub struct Sureness {
     /// [`PoseSource::Pins`] or [`PoseSource::Snap`].
     pub source: PoseSource,
     pub uncertainty: Uncertainty,
+    /// Turns about an axis of symmetry are left out of all this.
+    pub leaves_out_turns: bool,
     /// Of the depth's standard deviation what the tolerances alone make: no pin changes that.
     pub by_tolerances_mm: f64,
     pub weakest: Option<Weakest>,
@@ -63,12 +67,13 @@ impl Session {
         }
         let sphere = object.mesh.mesh.sphere();
         let center = pose.transform_point(sphere.center);
-        let wide = covariance.with_tolerances(&tolerances, center);
+        let free = FreeTurns::of(&object.symmetries, pose, sphere.center, sphere.radius);
+        let wide = covariance.with_tolerances(&tolerances, center).without(&free);
         let by_tolerances_mm = tolerances.focal.hypot(tolerances.mesh_scale) * center.length();
         let helpful = most_helpful_point(
             &photo.camera,
             pose,
-            &covariance,
+            (&covariance, &free),
             (sphere.center, sphere.radius),
             PinOptions::default().click_sigma_px,
             seen_points(object, pose),
@@ -77,6 +82,7 @@ impl Session {
             |point: DVec3| pose.rotation * (point - sphere.center) / sphere.radius.max(f64::MIN_POSITIVE);
         Some(Sureness {
             source,
+            leaves_out_turns: !free.is_empty(),
             uncertainty: Uncertainty::of(&wide, pose, sphere.center),
             by_tolerances_mm,
             weakest: weakest(&wide, pose, sphere.center, sphere.radius),

@@ -4,6 +4,7 @@
 //! a function that says whether to go on, and seeds as arguments.
 
 pub mod contour;
+mod free_turns;
 mod least_squares;
 mod linear;
 mod motion;
@@ -16,6 +17,7 @@ mod test_chance;
 mod uncertainty;
 mod weakest;
 
+pub use free_turns::FreeTurns;
 pub use motion::TwistCovariance;
 pub use uncertainty::{Tolerances, Uncertainty};
 pub use weakest::{Weakest, Weakness, most_helpful_point, weakest};

@@ -2,9 +2,10 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::TwistCovariance;
+use super::free_turns::in_lengths;
 use super::linear::{Matrix, symmetric_eigen};
 use super::motion::{motion_row, moved_about, project_with_jacobian};
+use super::{FreeTurns, TwistCovariance};
 use crate::math::{Intrinsics, Pose};
 
 /// What kind of motion a pose leaves most open.
@@ -59,21 +60,13 @@ pub fn weakest(
     (sigma_mm.is_finite() && sigma_mm > 0.0).then_some(Weakest { kind, step, center_camera_mm })
 }
 
-/// Turns as the lengths of what they move at a radius.
-fn in_lengths(covariance: &Matrix<6>, radius_mm: f64) -> Matrix<6> {
-    let unit = |axis: usize| if axis < 3 { radius_mm } else { 1.0 };
-    std::array::from_fn(|row| {
-        std::array::from_fn(|column| unit(row) * covariance[row][column] * unit(column))
-    })
-}
-
 /// Of points in the `object` frame the one where a pin would make the pose surest, and the standard deviation that would
 /// then be left of the depth, in millimetres. The measure is the sum of all variances, turns as the lengths of what they
-/// move. `None` where no point is before the camera.
+/// move, but for turns that nobody can see. `None` where no point is before the camera.
 pub fn most_helpful_point(
     camera: &Intrinsics,
     camera_from_object: &Pose,
-    covariance: &TwistCovariance,
+    (covariance, free): (&TwistCovariance, &FreeTurns),
     (center_mm, radius_mm): (DVec3, f64),
     click_sigma_px: f64,
     points_mm: impl Iterator<Item = DVec3>,
@@ -84,9 +77,9 @@ pub fn most_helpful_point(
     let with_pin = |point_mm: DVec3| {
         let after =
             after_pin(&before, camera, camera_from_object.transform_point(point_mm), center, click_sigma_px)?;
-        let lengths = in_lengths(&after, radius_mm);
+        let lengths = free.taken_out_of(&in_lengths(&after, radius_mm));
         let sum: f64 = (0..6).map(|axis| lengths[axis][axis]).sum();
-        let along = |row: usize, column: usize| ray[row] * after[3 + row][3 + column] * ray[column];
+        let along = |row: usize, column: usize| ray[row] * lengths[3 + row][3 + column] * ray[column];
         let depth: f64 = (0..9).map(|entry| along(entry / 3, entry % 3)).sum();
         Some((sum, point_mm, depth.max(0.0).sqrt()))
     };
@@ -125,6 +118,7 @@ fn after_pin(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Symmetries;
 
     const RADIUS_MM: f64 = 60.0;
 
@@ -164,7 +158,8 @@ mod tests {
         let points = [DVec3::ZERO, DVec3::X * 50.0, DVec3::Y * 20.0];
         let best = |points: &[DVec3]| {
             let around = (DVec3::ZERO, RADIUS_MM);
-            most_helpful_point(&camera, &pose(), &rolling, around, 1.5, points.iter().copied())
+            let free = FreeTurns::of(&Symmetries::default(), &pose(), DVec3::ZERO, RADIUS_MM);
+            most_helpful_point(&camera, &pose(), (&rolling, &free), around, 1.5, points.iter().copied())
         };
         let (point, depth_mm) = best(&points).unwrap();
         assert_eq!(point, points[1]);

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::markdown::{Block, blocks};
 use super::pack::{Draft, Pack, Role};
 use super::{Assignment, SampleSets, Saving, Schedule, StartPose, Study, StudyError};
+use crate::math::sort_short;
 use crate::scene::Scene;
 
 /// One thing to look at.
@@ -50,7 +51,7 @@ pub fn check(draft: &Draft, scene: &Scene, pack: Result<&Pack, &StudyError>) -> 
     settings(&draft.study, &mut findings);
     pictures(draft, &mut findings);
     truths(draft, scene, &mut findings);
-    findings.sort_by_key(|finding| !finding.is_error);
+    sort_short(&mut findings, |a, b| b.is_error.cmp(&a.is_error));
     findings.dedup();
     findings
 }

@@ -1,7 +1,7 @@
 //! A trial watched again from its events.
 
 use super::{EventKind, TrialResult};
-use crate::math::{Pose, PoseError};
+use crate::math::{Pose, PoseError, sort_short};
 
 /// Where the object was at every moment of a trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ impl Replay {
         let step = |event: &super::Event| Ok((event.at_ms, event.kind, event.pose().transpose()?));
         let mut steps = trial.events.iter().map(step).collect::<Result<Vec<_>, PoseError>>()?;
         // Written in order; a file that was edited may not be.
-        steps.sort_by_key(|(at_ms, ..)| *at_ms);
+        sort_short(&mut steps, |a, b| a.0.cmp(&b.0));
         Ok(Self { start: trial.start_pose.to_pose()?, steps })
     }
 

@@ -3,6 +3,7 @@
 use egui::{Align2, Area, Context, Id, Key, Modifiers, Order, Rect, Sense, TextEdit, TextStyle, Ui, Vec2};
 
 use super::{Keymap, menus, theme};
+use crate::math::sort_short;
 use crate::scene::{Look, OverlayMode};
 use crate::session::{COMMANDS, Command, CommandId, Session};
 
@@ -210,7 +211,7 @@ fn ranked(entries: Vec<Entry>, query: &str) -> Vec<Entry> {
     let mut scored: Vec<(i32, Entry)> =
         entries.into_iter().filter_map(|entry| Some((score_of(&entry, query)?, entry))).collect();
     // Stable: what fits equally well stays in the menus' order.
-    scored.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
+    sort_short(&mut scored, |a, b| b.0.cmp(&a.0));
     scored.into_iter().map(|(_, entry)| entry).collect()
 }
 

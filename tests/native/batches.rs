@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use egui_kittest::kittest::Queryable as _;
 use pinpose::formats::NamedFile;
 use pinpose::platform::{MemoryStorage, PageCall};
 
@@ -39,6 +40,9 @@ fn snap_on_all_photos_is_one_step_that_says_what_it_did() {
     let said = state.notices.iter().find(|notice| notice.starts_with("Snapped")).unwrap();
     assert!(said.contains("1 of 1 poses") && said.contains("Least sure: tea tin"), "{said}");
     assert_ne!(tin(&mut program), before);
+    program.harness.step();
+    let line = "Snap on all photos Snapped 1 of 1 poses";
+    assert!(program.harness.query_all_by_label_contains(line).next().is_some(), "the history says so too");
     program.command("undo");
     assert_eq!(tin(&mut program), before);
 }

@@ -7,9 +7,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glam::{DVec2, DVec3};
 use pinpose::interact::Hands;
-use pinpose::scene::{Pin, PoseSource};
-use pinpose::session::{Command, PinChange, Session};
-use pinpose::solve::{Tolerances, TwistCovariance, Weakness};
+use pinpose::scene::{Fold, Pin, PoseSource, SymmetryAxis};
+use pinpose::session::{Command, ObjectChange, PinChange, Session};
+use pinpose::solve::{Tolerances, TwistCovariance, Uncertainty, Weakness};
 use pinpose::ui::{self, ShownMotion, UiState};
 
 use crate::support::{NOW_MS, quiet_surroundings, small_session};
@@ -67,6 +67,31 @@ fn tolerances_and_snaps_change_how_sure_a_pose_is() {
     let set = Command::SetPose { photo, object, camera_from_object: moved, source: PoseSource::Manual };
     session.apply(set, NOW_MS).unwrap();
     assert_eq!(session.sureness(&EXACT), None, "nothing is known of a pose by hand");
+}
+
+#[test]
+fn turns_about_axes_of_symmetry_are_no_error() {
+    let mut session = pinned_session();
+    let object = session.selected().unwrap();
+    let plain = session.sureness(&EXACT).unwrap();
+    let mut add = |axis: DVec3| {
+        let axis = SymmetryAxis { axis, through_mm: DVec3::ZERO, fold: Fold::Continuous };
+        session.apply(Command::EditObject(object, ObjectChange::AddSymmetry(axis)), NOW_MS).unwrap();
+        session.sureness(&EXACT).unwrap()
+    };
+    let round = add(DVec3::Y);
+    assert!(round.leaves_out_turns && !plain.leaves_out_turns);
+    assert!(round.uncertainty.tilt_rad <= plain.uncertainty.tilt_rad);
+    // A second axis makes it a ball: all its turns look the same.
+    let ball = add(DVec3::X);
+    let Uncertainty { tilt_rad, roll_rad, depth_mm, .. } = ball.uncertainty;
+    // Rounding of 400² on the way to the camera's centre and back.
+    assert!(tilt_rad < 1e-6 && roll_rad < 1e-6, "{ball:?}");
+    // The box's middle is on both axes, so its place is as unsure as before.
+    assert!((depth_mm - plain.uncertainty.depth_mm).abs() < 1e-6, "{ball:?}");
+    assert!(matches!(ball.weakest.unwrap().kind, Weakness::Depth | Weakness::Lateral));
+    let by_pins = session.pin_report().unwrap().uncertainty.unwrap();
+    assert!(by_pins.tilt_rad < 1e-6, "{by_pins:?}");
 }
 
 #[test]

@@ -7,6 +7,7 @@ use super::reading::{Read, Reading, Source};
 use crate::app::jobs::{Done, JobKind, Jobs, Urgency};
 use crate::formats::dataset::{Dataset, DatasetMesh};
 use crate::formats::{FileWithCompanions, NamedFile, PosesAs, with_companions};
+use crate::math::sort_short;
 use crate::scene::{MeshAsset, PhotoAsset};
 use crate::session::DatasetImport;
 
@@ -101,7 +102,7 @@ impl Opening {
 
     /// What was read, for the session.
     pub fn finish(&mut self) -> DatasetImport {
-        self.problems.sort();
+        sort_short(&mut self.problems, Ord::cmp);
         DatasetImport {
             dataset: self.dataset.clone(),
             images: std::mem::take(&mut self.images),

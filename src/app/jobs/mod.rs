@@ -296,7 +296,7 @@ fn read_reply(
 fn write_photo(asset: &PhotoAsset, pixels: &Pixels) -> Vec<u8> {
     let mut writer = Writer::default();
     writer.bytes(asset.sha256.to_string().as_bytes());
-    writer.number(asset.exif_focal_px.unwrap_or(0.0));
+    writer.focal(asset.exif_focal);
     writer.raw(&write_pixels(pixels));
     writer.finish()
 }
@@ -318,7 +318,7 @@ fn read_pixels(reader: &mut Reader<'_>) -> Option<Pixels> {
 
 fn read_photo_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
     let sha256 = read_hash(reader)?;
-    let exif_focal_px = Some(reader.number()?).filter(|focal_px| *focal_px > 0.0);
+    let exif_focal = reader.focal()?;
     let pixels = read_pixels(reader)?;
     let (width, height) = (pixels.width, pixels.height);
     let asset = PhotoAsset {
@@ -327,7 +327,7 @@ fn read_photo_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
         bytes: file.bytes.clone(),
         width,
         height,
-        exif_focal_px,
+        exif_focal,
     };
     Some(Done::Photo(Arc::new(asset), Arc::new(pixels)))
 }
@@ -341,7 +341,7 @@ fn write_headers<'a>(files: impl Iterator<Item = &'a NamedFile>) -> Vec<u8> {
                 writer.bytes(asset.sha256.to_string().as_bytes());
                 writer.number(f64::from(asset.width));
                 writer.number(f64::from(asset.height));
-                writer.number(asset.exif_focal_px.unwrap_or(0.0));
+                writer.focal(asset.exif_focal);
             }
             Err(error) => {
                 writer.byte(0);
@@ -366,9 +366,9 @@ fn read_header(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Result<Arc<P
     }
     let sha256 = read_hash(reader)?;
     let (width, height) = (reader.number()? as u32, reader.number()? as u32);
-    let exif_focal_px = Some(reader.number()?).filter(|focal_px| *focal_px > 0.0);
+    let exif_focal = reader.focal()?;
     let (file_name, bytes) = (file.name.clone(), file.bytes.clone());
-    Some(Ok(Arc::new(PhotoAsset { file_name, sha256, bytes, width, height, exif_focal_px })))
+    Some(Ok(Arc::new(PhotoAsset { file_name, sha256, bytes, width, height, exif_focal })))
 }
 
 fn write_depth(file: &NamedFile, depth: &DepthPixels) -> Vec<u8> {
@@ -387,7 +387,7 @@ fn read_depth_reply(file: &NamedFile, reader: &mut Reader<'_>) -> Option<Done> {
     let depth = DepthPixels { width, height, raw };
     let is_whole = depth.raw.len() as u64 == u64::from(width) * u64::from(height);
     let (file_name, bytes) = (file.name.clone(), file.bytes.clone());
-    let asset = PhotoAsset { file_name, sha256, bytes, width, height, exif_focal_px: None };
+    let asset = PhotoAsset { file_name, sha256, bytes, width, height, exif_focal: None };
     is_whole.then(|| Done::DepthMap(Arc::new(asset), Arc::new(depth)))
 }
 

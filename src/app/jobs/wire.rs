@@ -2,6 +2,8 @@
 
 use bytemuck::Pod;
 
+use crate::photo::{ExifFocal, ExifFocalSource};
+
 #[derive(Debug, Default)]
 pub struct Writer {
     bytes: Vec<u8>,
@@ -19,6 +21,11 @@ impl Writer {
 
     pub fn number(&mut self, number: f64) {
         self.bytes.extend_from_slice(&number.to_le_bytes());
+    }
+
+    pub fn focal(&mut self, focal: Option<ExifFocal>) {
+        self.number(focal.map_or(0.0, |focal| focal.focal_px));
+        self.byte(focal.map_or(0, |focal| focal.source as u8));
     }
 
     /// With its length before it.
@@ -61,6 +68,16 @@ impl<'a> Reader<'a> {
         let (number, rest) = self.rest.split_first_chunk()?;
         self.rest = rest;
         Some(f64::from_le_bytes(*number))
+    }
+
+    /// `Some(None)` where there was none.
+    #[allow(clippy::option_option, reason = "less than a whole number is another thing than no focal length")]
+    pub fn focal(&mut self) -> Option<Option<ExifFocal>> {
+        const SOURCES: [ExifFocalSource; 3] =
+            [ExifFocalSource::Equivalent, ExifFocalSource::FocalPlane, ExifFocalSource::SensorTable];
+        let focal_px = self.number()?;
+        let source = *SOURCES.get(usize::from(self.byte()?))?;
+        Some((focal_px > 0.0).then_some(ExifFocal { focal_px, source }))
     }
 
     pub fn bytes(&mut self) -> Option<&'a [u8]> {

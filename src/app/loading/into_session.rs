@@ -188,6 +188,6 @@ fn lacking(document: &Document, batch: &Batch) -> Vec<String> {
 
 /// A drop of masks alone brings nothing else.
 fn is_nothing(batch: &Batch) -> bool {
-    let Batch { photos, meshes, cameras, poses, .. } = batch;
-    photos.is_empty() && meshes.is_empty() && cameras.is_empty() && poses.is_empty()
+    let Batch { photos, meshes, cameras, poses, pins, .. } = batch;
+    photos.is_empty() && meshes.is_empty() && cameras.is_empty() && poses.is_empty() && pins.is_none()
 }

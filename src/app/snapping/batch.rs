@@ -15,14 +15,12 @@ pub struct Batch {
     moved: Vec<(Asked, SnapOutcome)>,
     /// Which stay as they are.
     refused: usize,
-    /// Of those that moved, the one that fits its photo least.
-    worst: Option<(f64, Asked)>,
 }
 
 impl Batch {
     pub fn new(targets: Vec<(PhotoId, ObjectId)>) -> Self {
         let total = targets.len();
-        Self { waiting: targets.into(), total, moved: Vec::new(), refused: 0, worst: None }
+        Self { waiting: targets.into(), total, moved: Vec::new(), refused: 0 }
     }
 
     pub fn text(&self) -> String {
@@ -46,9 +44,6 @@ impl Batch {
             return;
         }
         self.moved.push((asked, *outcome));
-        if self.worst.is_none_or(|(score, _)| outcome.score_after < score) {
-            self.worst = Some((outcome.score_after, asked));
-        }
     }
 }
 
@@ -96,22 +91,20 @@ impl PinPose {
             let present = scene.annotation(asked.photo, asked.object);
             present.is_some_and(|annotation| annotation.camera_from_object == asked.start)
         };
-        let moved = batch.moved.into_iter().filter(is_as_it_was);
-        let poses: Vec<_> = moved
-            .map(|(asked, outcome)| {
-                ((asked.photo, asked.object), outcome.camera_from_object, outcome.covariance)
-            })
-            .collect();
-        let stayed = batch.total - poses.len();
-        let mut text = format!("Snapped {} of {} poses", poses.len(), batch.total);
+        let moved: Vec<(Asked, SnapOutcome)> = batch.moved.into_iter().filter(is_as_it_was).collect();
+        let mut text = format!("Snapped {} of {} poses", moved.len(), batch.total);
+        let stayed = batch.total - moved.len();
         if stayed > 0 {
             text += &format!(", {stayed} stay as they are");
         }
-        if let Some(worst) = batch.worst.filter(|_| !poses.is_empty()) {
-            text += &format!(". {}", self.words_of_worst(worst));
-        }
-        if !poses.is_empty() {
-            self.apply(Command::TakeSnaps(poses));
+        let worst = moved.iter().min_by(|(_, a), (_, b)| a.score_after.total_cmp(&b.score_after));
+        if let Some((asked, outcome)) = worst {
+            text += &format!(". {}", self.words_of_worst((outcome.score_after, *asked)));
+            let pose_of = |(asked, outcome): &(Asked, SnapOutcome)| {
+                ((asked.photo, asked.object), outcome.camera_from_object, outcome.covariance)
+            };
+            let (snaps, least_sure) = (moved.iter().map(pose_of).collect(), (asked.photo, asked.object));
+            self.apply(Command::TakeSnaps { snaps, summary: text.as_str().into(), least_sure });
         }
         self.notify(Notice::info(text));
     }

@@ -9,6 +9,7 @@ use super::words::Trouble;
 use super::{Participating, Purpose, Ready, State, newest_kept};
 use crate::app::jobs::{Done, JobKind};
 use crate::app::loading::Loading as Jobs;
+use crate::math::sort_short;
 use crate::platform::{self, EXAMPLE_STUDY_PATH, FetchError, Saved};
 use crate::study::pack::{STUDY_NAME, StudyFiles};
 use crate::study::{Asset, Participation, Sample, framed_mesh};
@@ -215,10 +216,11 @@ impl Participating {
             )
             .collect();
         let pictures = &study.texts.pictures;
-        missing.sort_by_key(|asset| match pictures.iter().any(|picture| picture.path == asset.path) {
+        let rank = |path: &str| match pictures.iter().any(|picture| picture.path == path) {
             true => 0,
-            false => 1 + u8::from(!of_practice.contains(asset.path.as_str())),
-        });
+            false => 1 + u8::from(!of_practice.contains(path)),
+        };
+        sort_short(&mut missing, |a, b| rank(&a.path).cmp(&rank(&b.path)));
         let (url, _) = address(&link.study);
         let folder = url.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
         let (arrived, ctx) = (self.arrived.clone(), self.ctx.clone());

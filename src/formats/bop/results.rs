@@ -2,6 +2,7 @@
 
 use crate::formats::gather::{Found, Gather};
 use crate::formats::{FileKey, FormatError, Incoming};
+use crate::math::sort_short;
 
 /// BOP's targets are some ten thousand images, of each of which a method gives a few estimates.
 const MAX_ROWS: usize = 500_000;
@@ -77,7 +78,7 @@ pub fn read_results(file_name: &str, text: &str) -> Result<Incoming, FormatError
         }
         rows.push((index + 1, row));
     }
-    rows.sort_by(|(_, a), (_, b)| {
+    sort_short(&mut rows, |(_, a), (_, b)| {
         let place = |row: &Row| (row.scene, row.image, row.object);
         place(a).cmp(&place(b)).then(b.score.total_cmp(&a.score))
     });

@@ -13,7 +13,7 @@ use super::{
 use crate::formats::gather::Gather;
 use crate::formats::megapose::{ObjectData, gather_objects, read_camera_from_world, read_objects};
 use crate::formats::{CameraFile, FileKey, FormatError, camera};
-use crate::math::Pose;
+use crate::math::{Pose, sort_short};
 
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
@@ -48,7 +48,8 @@ fn example_of(listing: &Listing, camera: &str) -> Option<Example> {
     };
     let mut objects: Vec<String> =
         listing.below(folder).filter(|path| path.ends_with("object_data.json")).map(str::to_owned).collect();
-    objects.sort_by_key(|path| (listing.folder_name(parent(path)) != "outputs", path.len()));
+    let rank = |path: &str| (listing.folder_name(parent(path)) != "outputs", path.len());
+    sort_short(&mut objects, |a, b| rank(a).cmp(&rank(b)));
     Some(Example {
         folder: folder.to_owned(),
         photo: image("image_rgb")?,
@@ -110,7 +111,7 @@ impl Layout {
 
         let (objects_path, objects) = read_best(example, contents, dataset);
         let mut labels: Vec<&str> = objects.iter().map(|object| object.label.as_str()).collect();
-        labels.sort_unstable();
+        sort_short(&mut labels, Ord::cmp);
         labels.dedup();
         self.list_meshes(example, &labels, dataset);
         let mut gather = Gather::new(base_name(objects_path));

@@ -10,7 +10,7 @@ use super::{Contents, DatasetMesh};
 use crate::formats::file_key::bop_object_id;
 use crate::formats::yaml::read_yaml;
 use crate::formats::{FormatError, text};
-use crate::math::Pose;
+use crate::math::{Pose, sort_short};
 use crate::scene::{ContinuousSymmetry, Symmetries};
 
 /// A mesh's folder may be full of other meshes' textures; more than this is a folder of photos.
@@ -50,7 +50,8 @@ pub(super) fn model_folders(listing: &Listing) -> Vec<ModelFolder> {
             info: ["models_info.json", "models_info.yml"].iter().find_map(|name| listing.find(path, name)),
         })
         .collect();
-    found.sort_by_key(|folder| rank_of_folder(listing.folder_name(&folder.path)));
+    let rank = |path: &str| rank_of_folder(listing.folder_name(path));
+    sort_short(&mut found, |a, b| rank(&a.path).cmp(&rank(&b.path)));
     found
 }
 

@@ -3,15 +3,16 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use super::{
-    CameraOriginEntry, ContinuousSymmetryEntry, Conventions, DepthEntry, Document, MaskEntry, ObjectEntry,
-    PhotoEntry, PinEntry, PoseEntry, ReferenceEntry, ReferencePoseEntry, SourceEntry, StateEntry,
-    SymmetriesEntry, VERSION, ViewSettings,
+    CameraOriginEntry, ContinuousSymmetryEntry, Conventions, DepthEntry, Document, ExifSensorEntry,
+    MaskEntry, ObjectEntry, PhotoEntry, PinEntry, PoseEntry, ReferenceEntry, ReferencePoseEntry, SourceEntry,
+    StateEntry, SymmetriesEntry, VERSION, ViewSettings,
 };
 use crate::formats::incoming::{IncomingReference, ObjectLook, PhotoLook};
 use crate::formats::{
     FileKey, FormatError, Incoming, IncomingCamera, IncomingObject, IncomingPhoto, IncomingPose,
 };
 use crate::math::{Distortion, Intrinsics, Pose};
+use crate::photo::ExifFocalSource;
 use crate::scene::{
     Annotation, AnnotationState, CameraOrigin, ContinuousSymmetry, DepthMap, Mask, MeshFrame, Object, Photo,
     Pin, PoseSource, Rgb, Scene, Sha256, Symmetries,
@@ -428,8 +429,9 @@ impl From<CameraOrigin> for CameraOriginEntry {
     fn from(origin: CameraOrigin) -> Self {
         match origin {
             CameraOrigin::AssumedFieldOfView => Self::AssumedFieldOfView,
-            CameraOrigin::Exif => Self::Exif,
+            CameraOrigin::Exif(source) => Self::Exif { sensor: source.into() },
             CameraOrigin::Pins { relative_sigma } => Self::Pins { relative_sigma },
+            CameraOrigin::Slider { before_px } => Self::Slider { before_px },
             CameraOrigin::Typed => Self::Typed,
             CameraOrigin::File(name) => Self::File { name },
         }
@@ -440,8 +442,9 @@ impl From<CameraOriginEntry> for CameraOrigin {
     fn from(entry: CameraOriginEntry) -> Self {
         match entry {
             CameraOriginEntry::AssumedFieldOfView => Self::AssumedFieldOfView,
-            CameraOriginEntry::Exif => Self::Exif,
+            CameraOriginEntry::Exif { sensor } => Self::Exif(sensor.into()),
             CameraOriginEntry::Pins { relative_sigma } => Self::Pins { relative_sigma },
+            CameraOriginEntry::Slider { before_px } => Self::Slider { before_px },
             CameraOriginEntry::Typed => Self::Typed,
             CameraOriginEntry::File { name } => Self::File(name),
         }
@@ -464,5 +467,6 @@ macro_rules! mirror {
     };
 }
 
+mirror!(ExifFocalSource, ExifSensorEntry, Equivalent, FocalPlane, SensorTable);
 mirror!(AnnotationState, StateEntry, Untouched, Carried, Posed, Confirmed);
 mirror!(PoseSource, SourceEntry, Manual, Pins, Snap, Tracked, Imported);

@@ -14,7 +14,7 @@ const REPORTED_DEFECT: f64 = 1e-3;
 pub fn read_ground_truth(file_name: &str, text: &str) -> Result<Incoming, FormatError> {
     let camera_end = camera_end(text)?;
     let (camera_text, poses_text) = text.split_at(camera_end);
-    let value = serde_json::from_str(camera_text).map_err(FormatError::json)?;
+    let value = serde_json::from_slice(camera_text.as_bytes()).map_err(FormatError::json)?;
     let camera = camera::read_camera(file_name, &value)?;
 
     let mut incoming = Incoming::new(file_name);

@@ -20,7 +20,7 @@ fn lossless_formats_keep_their_pixels() {
         let photo = decode(&written(gradient(5, 3), format)).unwrap();
         assert_eq!((photo.pixels.width, photo.pixels.height), (5, 3), "{format:?}");
         assert_eq!(photo.pixels.rgba[4 * 7..4 * 8], [2, 1, 7, 255], "{format:?}");
-        assert_eq!(photo.exif_focal_px, None);
+        assert_eq!(photo.exif_focal, None);
     }
 }
 

@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 use thiserror::Error;
 
 use super::{ContinuousSymmetry, Symmetries};
-use crate::math::{BoundingSphere, Pose};
+use crate::math::{BoundingSphere, Pose, sort_short};
 
 /// Turns about one line, after which an object looks the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,7 +139,7 @@ impl Symmetries {
                 None => axes.push(axis),
             }
         }
-        axes.sort_by_key(|axis| std::cmp::Reverse(axis.fold));
+        sort_short(&mut axes, |a, b| b.fold.cmp(&a.fold));
         axes
     }
 

@@ -11,7 +11,7 @@ use super::super::motion::{motion_row, project_with_jacobian};
 use super::p3p::p3p;
 use super::refine::{Fit, Fitting, Kernel, residual};
 use super::{Pin, PinOptions};
-use crate::math::{Intrinsics, Pose};
+use crate::math::{Intrinsics, Pose, sort_short};
 
 /// Squared Mahalanobis distance in two dimensions that noise exceeds once in 270,000 pins.
 const GATE: f64 = 25.0;
@@ -57,7 +57,7 @@ fn finalists(camera: &Intrinsics, pins: &[Pin], options: &PinOptions) -> Vec<Pos
         .flat_map(|triple| p3p(triple.map(|i| pins[i].point_mm), triple.map(|i| directions[i])))
         .map(|pose| (score(&pose), pose))
         .collect();
-    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_short(&mut scored, |a, b| a.0.total_cmp(&b.0));
     scored.into_iter().take(FINALISTS).map(|(_, pose)| pose).collect()
 }
 

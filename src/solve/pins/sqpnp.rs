@@ -8,7 +8,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::super::least_squares::{Limits, NormalEquations, levenberg_marquardt};
 use super::super::linear::{Matrix, symmetric_eigen};
-use crate::math::{Pose, rotation_from_rotation_vector};
+use crate::math::{Pose, rotation_from_rotation_vector, sort_short};
 
 /// A point of the object and the ray (x, y, 1) on which it is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +42,7 @@ pub fn sqpnp(sightings: &[Sighting]) -> Vec<Pose> {
             }
         }
     }
-    minima.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_short(&mut minima, |a, b| a.0.total_cmp(&b.0));
     minima.into_iter().map(|(_, rotation)| problem.pose(&rotation)).collect()
 }
 

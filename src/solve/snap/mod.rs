@@ -343,5 +343,18 @@ const SURE_SCORE: f64 = 0.68;
 /// Residuals far below their variances are luck.
 const SMALLEST_RESIDUAL: f64 = 0.05;
 
+/// How well a photo agrees with a pose as it is; `None` where too little of the object is in it.
+pub fn score_of(
+    photo: &Pixels,
+    camera: &Intrinsics,
+    model: Arc<ContourModel>,
+    camera_from_object: &Pose,
+    hints: SnapHints,
+) -> Option<SnapScore> {
+    let Snap { model, picture, .. } = Snap::new(photo, camera, model, camera_from_object, hints);
+    let (picture, occluders) = picture?;
+    Look::at(&picture, &model, &occluders, camera_from_object).score(&picture)
+}
+
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::surface::{Care, Deviation, Surface};
 use super::{FoundSymmetry, NEARLY, TOLERANCE};
-use crate::math::Pose;
+use crate::math::{Pose, sort_short};
 use crate::scene::{Fold, SymmetryAxis};
 
 /// How many turns are looked for, most first: one with more has them all.
@@ -103,7 +103,7 @@ fn best(surface: &Surface<'_>, fold: u32, directions: impl Iterator<Item = DVec3
             Some((deviation.mean_mm, direction))
         })
         .collect();
-    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_short(&mut scored, |a, b| a.0.total_cmp(&b.0));
     let mut best: Vec<DVec3> = Vec::new();
     for (_, direction) in scored {
         if best.len() < MOST_FITTED && best.iter().all(|known| known.cross(direction).length() > APART_RAD) {

@@ -6,8 +6,10 @@
 //! surface is from the surface.
 
 mod axes;
+mod pieces;
 mod surface;
 
+use crate::math::sort_short;
 use crate::mesh::{Bvh, Mesh};
 use crate::scene::{Fold, Symmetries, SymmetryAxis};
 use surface::Surface;
@@ -75,7 +77,7 @@ fn is_continuous(found: &FoundSymmetry) -> bool {
 
 fn in_order(found: impl Iterator<Item = FoundSymmetry>) -> Vec<FoundSymmetry> {
     let mut found: Vec<FoundSymmetry> = found.collect();
-    found.sort_by(|a, b| b.axis.fold.cmp(&a.axis.fold).then(a.worst_mm.total_cmp(&b.worst_mm)));
+    sort_short(&mut found, |a, b| b.axis.fold.cmp(&a.axis.fold).then(a.worst_mm.total_cmp(&b.worst_mm)));
     found
 }
 

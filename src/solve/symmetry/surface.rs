@@ -3,10 +3,11 @@
 use glam::{DVec3, Vec3};
 
 use crate::math::Pose;
-use crate::mesh::{Bvh, Mesh, PointTree};
+use crate::mesh::{Bvh, Mesh, PointTree, SurfacePoint, weld};
 use crate::solve::least_squares::NormalEquations;
 use crate::solve::linear::{Matrix, solve, symmetric_eigen};
 use crate::solve::motion::{motion_row, moved_about};
+use crate::solve::symmetry::pieces::Pieces;
 
 /// Points of the surface, evenly over its area, in an order in which every beginning is even too.
 const AREA_POINTS: usize = 2000;
@@ -18,6 +19,8 @@ const STRIDE: usize = 1237;
 pub struct Surface<'a> {
     mesh: &'a Mesh,
     tree: &'a Bvh,
+    /// In place of the tree, where that would be slow.
+    pieces: Option<Pieces>,
     pub diameter_mm: f64,
     /// Of the surface's area: every symmetry leaves it where it is.
     pub center: DVec3,
@@ -54,21 +57,27 @@ impl<'a> Surface<'a> {
         let area = ends.last().copied().filter(|area| *area > 0.0 && area.is_finite())?;
         let (center, covariance) = moments(mesh, area);
         let (moments, axes) = symmetric_eigen(&covariance);
-        let named: Vec<_> = mesh.triangles().iter().flatten().collect();
-        let vertex = |index: &&u32| mesh.positions_mm().get(**index as usize).copied();
-        let step = named.len().div_ceil(VERTEX_POINTS).max(1);
-        let vertices: Vec<_> = named.iter().step_by(step).filter_map(vertex).collect();
-        let points: Vec<_> = named.iter().filter_map(vertex).collect();
+        let points = distinct_corners(mesh);
+        let step = points.len().div_ceil(VERTEX_POINTS).max(1);
+        let diameter_mm = PointTree::build(&points)?.diameter();
         Some(Self {
             mesh,
             tree,
-            diameter_mm: PointTree::build(&points)?.diameter(),
+            pieces: Pieces::of(mesh, diameter_mm),
+            diameter_mm,
             center,
             axes: axes.map(DVec3::from_array),
             moments,
             area_points: area_points(mesh, &ends, area),
-            vertex_points: vertices.into_iter().map(Vec3::as_dvec3).collect(),
+            vertex_points: points.into_iter().step_by(step).map(Vec3::as_dvec3).collect(),
         })
+    }
+
+    fn nearest(&self, place: DVec3, within_mm: f64) -> Option<SurfacePoint> {
+        match &self.pieces {
+            Some(pieces) => pieces.nearest(place, within_mm),
+            None => self.tree.nearest(self.mesh, place, within_mm),
+        }
     }
 
     fn points(&self, care: Care) -> impl Iterator<Item = DVec3> + '_ {
@@ -84,8 +93,7 @@ impl<'a> Surface<'a> {
     pub fn deviation(&self, turn: &Pose, care: Care, within_mm: f64) -> Option<Deviation> {
         let (mut worst_mm, mut sum, mut count) = (0.0_f64, 0.0, 0);
         for point in self.points(care) {
-            let distance_mm =
-                self.tree.nearest(self.mesh, turn.transform_point(point), within_mm)?.distance_mm;
+            let distance_mm = self.nearest(turn.transform_point(point), within_mm)?.distance_mm;
             worst_mm = worst_mm.max(distance_mm);
             sum += distance_mm;
             count += 1;
@@ -100,7 +108,7 @@ impl<'a> Surface<'a> {
         let mut count = 0.0;
         for point in self.points(Care::Fit) {
             let turned = turn.transform_point(point);
-            let Some(nearest) = self.tree.nearest(self.mesh, turned, within_mm) else { continue };
+            let Some(nearest) = self.nearest(turned, within_mm) else { continue };
             let [a, b, c] = self.mesh.corners(*self.mesh.triangles().get(nearest.triangle as usize)?);
             let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
             let row = motion_row(turned - self.center, normal);
@@ -116,6 +124,22 @@ impl<'a> Surface<'a> {
         let step = solve(&equations.h, &equations.g.map(|g| -g))?;
         Some(moved_about(turn, self.center, &step))
     }
+}
+
+/// Each place once, however many triangles meet at it: the middle of a fan is a corner of all of them.
+fn distinct_corners(mesh: &Mesh) -> Vec<Vec3> {
+    let named = mesh.triangles().iter().flatten();
+    let corners: Vec<Vec3> =
+        named.filter_map(|index| mesh.positions_mm().get(*index as usize).copied()).collect();
+    let (places, count) = weld(&corners);
+    let mut distinct = Vec::with_capacity(count);
+    for (corner, place) in corners.iter().zip(places) {
+        // Places are numbered as they come.
+        if place as usize == distinct.len() {
+            distinct.push(*corner);
+        }
+    }
+    distinct
 }
 
 /// The area up to each triangle's end.

@@ -1,5 +1,6 @@
 //! What a report knows: every comparison that was made, and which of them count.
 
+use crate::math::sort_short;
 use std::collections::BTreeMap;
 
 use super::measure::{Difference, Measure};
@@ -199,7 +200,7 @@ fn lowest<T>(rows: &[T], is_candidate: impl Fn(&T) -> bool, number: impl Fn(&T) 
         .filter(|(_, row)| is_candidate(row))
         .map(|(at, row)| (number(row), at))
         .collect();
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    sort_short(&mut candidates, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let [part, whole] = KEPT_PART;
     candidates.truncate(candidates.len() * part / whole);
     candidates.into_iter().map(|(_, at)| at).collect()

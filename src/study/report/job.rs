@@ -1,5 +1,6 @@
 //! The analysis as a job that is done in parts, so that a page stays awake.
 
+use crate::math::sort_short;
 use std::collections::BTreeMap;
 
 use super::analysis::{AgreementErrors, Analysis, PairErrors, ReportOptions, TrialErrors};
@@ -211,7 +212,8 @@ fn pair_tasks(participants: &[ReportParticipant]) -> Vec<Task> {
             groups.entry([trial.sample, trial.condition]).or_default().push(at);
         }
         for mut group in groups.into_values() {
-            group.sort_by_key(|at| one.trials.get(*at).map(|trial| trial.repeat));
+            let repeat = |at: usize| one.trials.get(at).map(|trial| trial.repeat);
+            sort_short(&mut group, |a, b| repeat(*a).cmp(&repeat(*b)));
             for (place, first) in group.iter().enumerate() {
                 let later = group.iter().skip(place + 1);
                 tasks.extend(later.map(|second| Task::Pair { participant, trials: [*first, *second] }));

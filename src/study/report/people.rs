@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::input::{Answered, ReportInput, ReportParticipant, SusAnswers, TlxAnswers, Trial};
+use crate::math::sort_short;
 use crate::study::{
     Answer, AnswerValue, Outcome, PairChoice, QuestionnaireResult, Results, Study, TrialResult,
 };
@@ -105,7 +106,7 @@ pub(super) fn sorted_and_labelled(input: &mut ReportInput) {
         .map(|participant| (set_of(&participant).unwrap_or(usize::MAX), participant))
         .collect();
     // Within a set the order is that of their beginning, in which they came.
-    people.sort_by_key(|(set, _)| *set);
+    sort_short(&mut people, |a, b| a.0.cmp(&b.0));
     let letters = letters(&input.sets);
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
     for (set, participant) in &mut people {
@@ -130,7 +131,7 @@ fn letters(sets: &[String]) -> Vec<char> {
         .filter_map(|first| first.to_uppercase().next())
         .collect();
     let mut distinct = firsts.clone();
-    distinct.sort_unstable();
+    sort_short(&mut distinct, Ord::cmp);
     distinct.dedup();
     if distinct.len() == sets.len() && !distinct.contains(&'P') {
         firsts

@@ -1,10 +1,11 @@
 //! The shown photo's intrinsics: the numbers, where they came from, and what to do where they are a guess.
 
-use egui::Ui;
+use egui::{Slider, Ui};
 
 use super::number_field::{NumberField, column_width, note, refusal};
 use super::section::section;
 use crate::math::{Distortion, Intrinsics};
+use crate::photo::ExifFocalSource;
 use crate::scene::{CameraOrigin, Photo, PhotoId};
 use crate::session::{Command, PhotoChange, Session};
 use crate::ui::icons::{Icon, icon_button};
@@ -15,6 +16,9 @@ pub struct CameraForm {
     refused: Option<(PhotoId, String)>,
     distortion_shown: bool,
 }
+
+/// Of the slider, in parts of the photo's long side: 118° to 7° wide.
+const FOCAL_RANGE: [f64; 2] = [0.3, 8.0];
 
 const LENS: [(&str, &str); 5] = [
     ("k1", "Radial distortion, times r² (OpenCV)"),
@@ -45,14 +49,26 @@ pub fn draw(ui: &mut Ui, session: &Session, form: &mut CameraForm, commands: &mu
         }
     };
     let mut asked = Vec::new();
-    section(ui, "Camera", true, |ui| buttons(ui, &mut asked), |ui| body(ui, photo, form, commands));
+    section(
+        ui,
+        "Camera",
+        true,
+        |ui| buttons(ui, &mut asked),
+        |ui| body(ui, (session, photo), form, commands),
+    );
     commands.append(&mut asked);
 }
 
-fn body(ui: &mut Ui, photo: &Photo, form: &mut CameraForm, commands: &mut Vec<Command>) {
+fn body(
+    ui: &mut Ui,
+    (session, photo): (&Session, &Photo),
+    form: &mut CameraForm,
+    commands: &mut Vec<Command>,
+) {
     let mut camera = photo.camera;
     ui.add_enabled_ui(!photo.locked, |ui| {
         pinhole_fields(ui, &mut camera);
+        focal_slider(ui, session, photo, commands);
         if form.distortion_shown || !camera.distortion.is_none() {
             distortion_fields(ui, &mut camera.distortion);
         }
@@ -77,7 +93,32 @@ fn body(ui: &mut Ui, photo: &Photo, form: &mut CameraForm, commands: &mut Vec<Co
     if let Some((_, reason)) = form.refused.as_ref().filter(|(refused, _)| *refused == photo.id) {
         refusal(ui, reason);
     }
-    guess(ui, photo);
+    guess(ui, session, photo);
+}
+
+/// The focal length by eye: all objects move so that the picture stays as it is, but for its perspective.
+fn focal_slider(ui: &mut Ui, session: &Session, photo: &Photo, commands: &mut Vec<Command>) {
+    let mut fx = photo.camera.fx;
+    let long_side_px = f64::from(photo.camera.width.max(photo.camera.height));
+    let [shortest, longest] = FOCAL_RANGE.map(|part| part * long_side_px);
+    ui.spacing_mut().slider_width = ui.available_width();
+    let range = shortest.min(fx)..=longest.max(fx);
+    let slider = Slider::new(&mut fx, range).logarithmic(true).show_value(false);
+    let response = ui.add(slider).on_hover_text(
+        "The focal length by eye: objects keep their place and size in the picture and move nearer or farther with it",
+    );
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Focal length with depth"));
+    if response.drag_started() {
+        commands.push(Command::BeginGesture("Focal length"));
+    }
+    // After Escape the hand may still be on it.
+    let goes_on = response.drag_started() || session.gesture_under_way() || !response.dragged();
+    if response.changed() && goes_on {
+        commands.push(Command::SetFocal { photo: photo.id, fx });
+    }
+    if response.drag_stopped() {
+        commands.push(Command::EndGesture);
+    }
 }
 
 fn pinhole_fields(ui: &mut Ui, camera: &mut Intrinsics) {
@@ -143,7 +184,10 @@ fn take(photo: &Photo, camera: Intrinsics, form: &mut CameraForm, commands: &mut
 /// Where numbers came from that are no guess.
 fn quiet_origin(ui: &mut Ui, photo: &Photo, room: f32) {
     let text = match &photo.camera_origin {
-        CameraOrigin::AssumedFieldOfView | CameraOrigin::Exif | CameraOrigin::Pins { .. } => return,
+        CameraOrigin::AssumedFieldOfView
+        | CameraOrigin::Exif(_)
+        | CameraOrigin::Pins { .. }
+        | CameraOrigin::Slider { .. } => return,
         CameraOrigin::Typed => "Typed".to_owned(),
         CameraOrigin::File(name) => format!("From {name}"),
     };
@@ -154,13 +198,22 @@ fn quiet_origin(ui: &mut Ui, photo: &Photo, room: f32) {
     });
 }
 
-fn guess(ui: &mut Ui, photo: &Photo) {
+fn guess(ui: &mut Ui, session: &Session, photo: &Photo) {
     match &photo.camera_origin {
         CameraOrigin::AssumedFieldOfView => {
             note(ui, "A guess: 60° field of view. Drop a camera file or type the numbers.", true);
         }
-        CameraOrigin::Exif => {
-            note(ui, "Estimated from the photo's EXIF data. Drop a camera file or type the numbers.", true);
+        CameraOrigin::Exif(source) => {
+            let from = match source {
+                ExifFocalSource::Equivalent => "the photo's EXIF data",
+                ExifFocalSource::FocalPlane => {
+                    "the lens and the sensor's resolution in the photo's EXIF data"
+                }
+                ExifFocalSource::SensorTable => {
+                    "the lens in the photo's EXIF data and its camera's usual sensor"
+                }
+            };
+            note(ui, &format!("Estimated from {from}. Drop a camera file or type the numbers."), true);
         }
         CameraOrigin::Pins { relative_sigma } => {
             let percent = 100.0 * relative_sigma;
@@ -170,6 +223,22 @@ fn guess(ui: &mut Ui, photo: &Photo) {
                 true,
             );
         }
+        CameraOrigin::Slider { before_px } => {
+            let depth_mm = depth_of_selected(session).map_or_else(String::new, |mm| format!("{mm:.0} mm, "));
+            let percent = 100.0 * (photo.camera.fx / before_px - 1.0);
+            note(
+                ui,
+                &format!("Focal length estimated by eye. Depth follows: {depth_mm}{percent:+.0} %."),
+                true,
+            );
+        }
         CameraOrigin::Typed | CameraOrigin::File(_) => {}
     }
+}
+
+/// Of the object's middle, along the view.
+fn depth_of_selected(session: &Session) -> Option<f64> {
+    let (_, object, annotation) = session.selected_annotation()?;
+    let center_mm = session.scene().object(object)?.mesh.mesh.sphere().center;
+    Some(annotation.camera_from_object.transform_point(center_mm).z)
 }

@@ -67,7 +67,11 @@ fn matching(log: &[LogEntry], search: &str) -> Vec<usize> {
 
 fn entry_text(entry: &LogEntry) -> String {
     let LogEntry { object_name, photo_name, label, .. } = entry;
-    format!("{} {object_name} {label} {photo_name} {}", time_text(entry.time_ms), source_text(entry.source))
+    let time = time_text(entry.time_ms);
+    match &entry.summary {
+        Some(summary) => format!("{time} {label} {summary}"),
+        None => format!("{time} {object_name} {label} {photo_name} {}", source_text(entry.source)),
+    }
 }
 
 fn entry_row(ui: &mut Ui, session: &Session, index: usize, entry: &LogEntry, commands: &mut Vec<Command>) {
@@ -95,16 +99,23 @@ fn entry_row(ui: &mut Ui, session: &Session, index: usize, entry: &LogEntry, com
             }
             let name = entry_text(entry);
             list::row_menu(ui, &name, Some(&response), |ui| entry_menu(ui, entry, commands));
-            response.on_hover_text(format!(
-                "{} at {}\n{} in {}, {}\nClick to return to this pose",
-                entry.label,
-                time_text(entry.time_ms),
-                entry.object_name,
-                entry.photo_name,
-                source_text(entry.source)
-            ));
+            response.on_hover_text(entry_tooltip(entry));
         });
     });
+}
+
+fn entry_tooltip(entry: &LogEntry) -> String {
+    let LogEntry { label, object_name, photo_name, .. } = entry;
+    let time = time_text(entry.time_ms);
+    match &entry.summary {
+        Some(summary) => format!("{label} at {time}\n{summary}\nClick to see the least sure pose"),
+        None => {
+            let source = source_text(entry.source);
+            format!(
+                "{label} at {time}\n{object_name} in {photo_name}, {source}\nClick to return to this pose"
+            )
+        }
+    }
 }
 
 fn entry_menu(ui: &mut Ui, entry: &LogEntry, commands: &mut Vec<Command>) {
@@ -132,7 +143,8 @@ fn entry_layout(ui: &Ui, entry: &LogEntry) -> LayoutJob {
     let mut job = LayoutJob::default();
     job.append(&time_text(entry.time_ms), 0.0, TextFormat::simple(digits, ui.visuals().weak_text_color()));
     job.append(entry.label, 7.0, plain);
-    let rest = format!("{} · {} · {}", entry.object_name, entry.photo_name, source_text(entry.source));
+    let whose = || format!("{} · {} · {}", entry.object_name, entry.photo_name, source_text(entry.source));
+    let rest = entry.summary.as_deref().map_or_else(whose, str::to_owned);
     job.append(&rest, 7.0, weak);
     job
 }

@@ -174,6 +174,16 @@ pub fn row_menu(
     name: Option<&Response>,
     mut content: impl FnMut(&mut Ui),
 ) -> Response {
+    row_menu_of_any(ui, of, name, &mut content)
+}
+
+/// Compiled once for all that is in such menus.
+fn row_menu_of_any(
+    ui: &mut Ui,
+    of: &str,
+    name: Option<&Response>,
+    content: &mut dyn FnMut(&mut Ui),
+) -> Response {
     let dots = icon_button(ui, Icon::Dots, &format!("More for {of}"), "More (also by right click)", true);
     let mut show = |popup: Popup<'_>| {
         popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {

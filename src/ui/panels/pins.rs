@@ -6,8 +6,7 @@ use super::list::ROW_HEIGHT;
 use super::number_field::note;
 use super::section::section;
 use crate::scene::{Pin, PoseSource};
-use crate::session::{Command, CommandId, PinChange, PinReport, Session};
-use crate::solve::pins::PinPose;
+use crate::session::{Command, CommandId, PinChange, PinReport, RankedFit, Session};
 use crate::ui::command_button::{command_button, command_icon};
 use crate::ui::icons::{Icon, icon_button};
 
@@ -33,14 +32,13 @@ pub fn draw(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
             row(ui, number, pin, &report, &mut inside);
         }
         advice(ui, &report);
-        for (number, other) in report.alternatives.iter().enumerate() {
-            alternative(ui, number, other, &mut inside, |camera_from_object| Command::SetPose {
-                photo,
-                object,
-                camera_from_object,
-                source: PoseSource::Pins,
-            });
-        }
+        let set_pose = |camera_from_object| Command::SetPose {
+            photo,
+            object,
+            camera_from_object,
+            source: PoseSource::Pins,
+        };
+        fits(ui, &session.ranked_fits(), &mut inside, set_pose);
         actions(ui, session, &report, &mut inside);
     });
     commands.extend(asked.into_iter().chain(inside));
@@ -82,22 +80,55 @@ fn advice(ui: &mut Ui, report: &PinReport) {
     }
 }
 
-/// Another pose that the pins allow.
-fn alternative(
+/// The poses that the pins allow, the one that the photo supports most first, and what that means.
+fn fits(
     ui: &mut Ui,
-    number: usize,
-    other: &PinPose,
+    fits: &[RankedFit],
     commands: &mut Vec<Command>,
-    take: impl FnOnce(crate::math::Pose) -> Command,
+    take: impl Fn(crate::math::Pose) -> Command,
 ) {
-    ui.horizontal(|ui| {
-        let text = format!("Other fit {}", number + 1);
-        let button = ui.button(text).on_hover_text("Take this pose instead; it is outlined in the view");
-        if button.clicked() {
-            commands.push(take(other.camera_from_object));
-        }
-        ui.label(RichText::new(format!("{:.1} px", other.rms_px)).weak());
-    });
+    for fit in fits {
+        ui.horizontal(|ui| {
+            let is_present = fit.number == 0;
+            let button = ui.add(egui::Button::new(name_of(fit)).selected(is_present));
+            let tooltip = if is_present {
+                "The pose as it is"
+            } else {
+                "Take this pose instead; it is outlined in the view"
+            };
+            if button.on_hover_text(tooltip).clicked() && !is_present {
+                commands.push(take(fit.camera_from_object));
+            }
+            ui.label(RichText::new(format!("{:.1} px", fit.rms_px)).weak());
+            if let Some(score) = fit.score {
+                ui.label(format!("{:.0} %", 100.0 * score)).on_hover_text(
+                    "How well the photo's colours and edges agree with the outline: 0 % is chance",
+                );
+            }
+        });
+    }
+    if let Some((words, is_warning)) = photo_says(fits) {
+        note(ui, &words, is_warning);
+    }
+}
+
+fn name_of(fit: &RankedFit) -> String {
+    if fit.number == 0 { "Present fit".to_owned() } else { format!("Other fit {}", fit.number) }
+}
+
+/// Scores closer than this may be in this order by chance.
+const CLEAR_LEAD: f64 = 0.03;
+
+/// Which fit the photo is for, and whether that is another one than the present; `None` until it was looked.
+fn photo_says(fits: &[RankedFit]) -> Option<(String, bool)> {
+    let (first, others) = fits.split_first()?;
+    let best = first.score?;
+    let next = others.iter().filter_map(|fit| fit.score).fold(0.0, f64::max);
+    if best < next + CLEAR_LEAD {
+        return Some(("The photo hardly tells these fits apart.".to_owned(), false));
+    }
+    let name = name_of(first).to_lowercase();
+    Some((format!("The photo supports the {name} most."), first.number != 0))
 }
 
 fn actions(ui: &mut Ui, session: &Session, report: &PinReport, commands: &mut Vec<Command>) {

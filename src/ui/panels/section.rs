@@ -19,6 +19,32 @@ pub fn section(
     buttons: impl FnOnce(&mut Ui),
     body: impl FnOnce(&mut Ui),
 ) {
+    let (mut buttons, mut body) = (Some(buttons), Some(body));
+    section_of_any(
+        ui,
+        title,
+        is_open_at_first,
+        &mut |ui| {
+            if let Some(buttons) = buttons.take() {
+                buttons(ui);
+            }
+        },
+        &mut |ui| {
+            if let Some(body) = body.take() {
+                body(ui);
+            }
+        },
+    );
+}
+
+/// Compiled once for all sections: there are a dozen.
+fn section_of_any(
+    ui: &mut Ui,
+    title: &str,
+    is_open_at_first: bool,
+    buttons: &mut dyn FnMut(&mut Ui),
+    body: &mut dyn FnMut(&mut Ui),
+) {
     let id = Id::unique(("side panel section", title));
     let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, is_open_at_first);
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), HEADER_HEIGHT), Sense::hover());

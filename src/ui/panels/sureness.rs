@@ -83,8 +83,13 @@ fn numbers(ui: &mut Ui, sureness: &Sureness) {
         PoseSource::Snap => "how well the photo fits the snap",
         _ => "how well the pins agree, with a click's 1.5 px",
     };
+    let turns = if sureness.leaves_out_turns {
+        ". Turns about the axis of symmetry look the same and are no error"
+    } else {
+        ""
+    };
     let tooltip = format!(
-        "One standard deviation, from {from}. 1 % of the focal length or of the mesh's size is 1 % of depth"
+        "One standard deviation, from {from}. 1 % of the focal length or of the mesh's size is 1 % of depth{turns}"
     );
     ui.label(RichText::new(text).small()).on_hover_text(tooltip);
 }

@@ -5,6 +5,7 @@ use glam::DVec2;
 
 use super::{ViewportPlace, colors};
 use crate::interact::{SceneMove, SceneView, StandardView};
+use crate::math::sort_short;
 use crate::ui::Asked;
 
 const SIDE: f32 = 92.0;
@@ -63,7 +64,7 @@ fn ends(rect: Rect, view: &SceneView) -> Vec<End> {
             End { view, position, depth: seen.z }
         })
         .collect();
-    ends.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    sort_short(&mut ends, |a, b| b.depth.total_cmp(&a.depth));
     ends
 }
 

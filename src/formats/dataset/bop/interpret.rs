@@ -11,6 +11,7 @@ use crate::formats::dataset::{Contents, Dataset, DatasetDepth, DatasetMask, Data
 use crate::formats::file_key::{bop_object_id, number_of};
 use crate::formats::gather::Gather;
 use crate::formats::{CameraFile, FileKey, FormatError, camera};
+use crate::math::sort_short;
 
 /// BOP's `depth_scale` where nothing says another.
 const USUAL_MM_PER_UNIT: f64 = 1.0;
@@ -263,7 +264,7 @@ impl Work<'_> {
             counts.iter().filter(|(count, _)| *count > 0).map(|(count, noun)| counted(*count, noun, "")),
         );
         if !self.without_mesh.is_empty() {
-            self.without_mesh.sort_unstable();
+            sort_short(&mut self.without_mesh, Ord::cmp);
             let names: Vec<String> =
                 self.without_mesh.iter().take(30).map(|id| format!("obj_{id:06}")).collect();
             dataset.missing.push(format!("meshes in a folder \"models\": {}", names.join(", ")));

@@ -7,6 +7,7 @@
 mod interpret;
 mod parts;
 
+use crate::math::sort_short;
 use std::sync::Arc;
 
 use super::listing::{Listing, parent};
@@ -56,7 +57,7 @@ impl Layout {
             paths.extend(self.common_camera(part));
             paths.extend(self.models_of(part).and_then(|models| models.info.clone()));
         }
-        paths.sort();
+        sort_short(&mut paths, Ord::cmp);
         paths.dedup();
         paths
     }

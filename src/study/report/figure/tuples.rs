@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::drawing::{Anchor, Drawing, Shape, Text};
 use super::{Figure, figure};
+use crate::math::sort_short;
 use crate::photo::{decode, png_rgba};
 use crate::study::comparison::comparison;
 use crate::study::report::{Analysis, Measure, ReportProgress, Rows, TrialErrors};
@@ -75,7 +76,7 @@ fn median_row(analysis: &Analysis, sample: usize) -> Option<TrialErrors> {
     let set = analysis.set_of(sample)?;
     let mut rows: Vec<&TrialErrors> =
         analysis.best_of_set(set, Rows::All).filter(|row| row.sample == sample).collect();
-    rows.sort_by(|a, b| a.errors.get(Measure::Add).total_cmp(&b.errors.get(Measure::Add)));
+    sort_short(&mut rows, |a, b| a.errors.get(Measure::Add).total_cmp(&b.errors.get(Measure::Add)));
     rows.get(rows.len().saturating_sub(1) / 2).map(|row| (*row).clone())
 }
 

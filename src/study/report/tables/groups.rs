@@ -1,5 +1,6 @@
 //! Conditions against one another, and persons by what they said of themselves.
 
+use crate::math::sort_short;
 use std::collections::BTreeSet;
 
 use super::super::quantity::{ConditionOrAll, Quantity};
@@ -80,7 +81,8 @@ pub(super) fn traits(analysis: &Analysis) -> Vec<Table> {
     let traits =
         analysis.participants.iter().flat_map(|person| person.traits.iter().map(|(item, _)| item.as_str()));
     let mut items: Vec<&str> = traits.collect::<BTreeSet<_>>().into_iter().collect();
-    items.sort_by_key(|item| !item.to_lowercase().contains("expert"));
+    let is_other = |item: &str| !item.to_lowercase().contains("expert");
+    sort_short(&mut items, |a, b| is_other(a).cmp(&is_other(b)));
     items.into_iter().enumerate().filter_map(|(at, item)| by_trait(analysis, at, item)).collect()
 }
 
