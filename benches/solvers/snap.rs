@@ -14,7 +14,7 @@ use pinpose::solve::contour::ContourModel;
 use pinpose::solve::snap::{Snap, SnapHints, SnapOptions, SnapReach};
 
 use crate::chance::Chance;
-use crate::numbers::{cpu_secs, mean, median, percent, quantile};
+use crate::numbers::{cpu_secs, mean, percent, quantile};
 use crate::photos::photo;
 use crate::real::{Run, data, disturbed, header, report};
 

@@ -116,7 +116,7 @@ impl PinPose {
         };
         let Some(Asked { photo, object, camera, .. }) = &self.ghosts.asked else { return };
         if let Some(pose) = waiting.pop_front() {
-            let score = score_of(pixels, camera, model.clone(), &pose, hints.clone());
+            let score = score_of(pixels, camera, model, &pose, hints);
             scores.push((pose, score.map(|score| score.total())));
         }
         if waiting.is_empty() {

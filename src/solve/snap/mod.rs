@@ -347,13 +347,14 @@ const SMALLEST_RESIDUAL: f64 = 0.05;
 pub fn score_of(
     photo: &Pixels,
     camera: &Intrinsics,
-    model: Arc<ContourModel>,
+    model: &ContourModel,
     camera_from_object: &Pose,
-    hints: SnapHints,
+    hints: &SnapHints,
 ) -> Option<SnapScore> {
-    let Snap { model, picture, .. } = Snap::new(photo, camera, model, camera_from_object, hints);
-    let (picture, occluders) = picture?;
-    Look::at(&picture, &model, &occluders, camera_from_object).score(&picture)
+    let options = SnapOptions::default();
+    let given = Given { photo, camera, model, start: camera_from_object, hints, options: &options };
+    let sight = Sight::new(&given, LARGEST_OBJECT_PX)?;
+    Look::at(&sight, model, camera_from_object, Density::Fine).score(&sight.picture)
 }
 
 #[cfg(test)]

@@ -277,22 +277,27 @@ mod tests {
         Pixels { width, height, rgba }
     }
 
+    fn srgb(light: f32) -> f64 {
+        1.055 * f64::from(light).powf(1.0 / 2.4) - 0.055
+    }
+
     #[test]
     fn a_point_keeps_its_place_in_the_cut_out() {
         let camera = Intrinsics::from_focal(200.0, 250, 200);
         for (size, factor) in [(80.0, 1.0), (700.0, 4.0)] {
             let rect = ImageRect { min: DVec2::splat(60.0), max: DVec2::splat(60.0 + size) };
-            let picture = Picture::new(&ramp(250, 200), &camera, &rect, None).unwrap();
+            let picture = Picture::new(&ramp(250, 200), &camera, &rect, None, 300.0).unwrap();
             assert_eq!(picture.photo_px, factor);
             for point in [DVec3::new(-0.05, 0.02, 1.0), DVec3::new(0.1, 0.1, 1.0)] {
                 let photo_pixel = camera.project(point).unwrap();
-                let [red, green, _] = picture.color(picture.camera.project(point).unwrap()).unwrap();
+                let light = picture.light(picture.camera.project(point).unwrap()).unwrap();
+                let [red, green, _] = light.map(srgb);
                 // Halving keeps a ramp a ramp; each step rounds to half a grey level.
-                assert!((f64::from(red) * 255.0 - photo_pixel.x).abs() < 1.0, "{red} {photo_pixel}");
-                assert!((f64::from(green) * 255.0 - photo_pixel.y).abs() < 1.0, "{green} {photo_pixel}");
+                assert!((red * 255.0 - photo_pixel.x).abs() < 1.0, "{red} {photo_pixel}");
+                assert!((green * 255.0 - photo_pixel.y).abs() < 1.0, "{green} {photo_pixel}");
             }
         }
         let outside = ImageRect { min: DVec2::splat(900.0), max: DVec2::splat(950.0) };
-        assert!(Picture::new(&ramp(250, 200), &camera, &outside, None).is_none());
+        assert!(Picture::new(&ramp(250, 200), &camera, &outside, None, 300.0).is_none());
     }
 }

@@ -2,10 +2,11 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use super::super::test_chance::Chance;
 use super::colors::{Band, ColorModel};
+use super::picture::Picture;
 use super::*;
 use crate::math::ImageRect;
 use crate::mesh::test_shapes::cube;
-use crate::raster::RasterImage;
+use crate::raster::{PixelRegion, RasterImage};
 use crate::solve::contour::{ContourPoint, DepthView, EdgeKind, OBJECT_ID};
 
 const HALF_SIZES_MM: DVec3 = DVec3::new(80.0, 45.0, 30.0);
@@ -140,7 +141,7 @@ fn two_halves(to: usize) -> (Picture, DepthView, Vec<ContourPoint>) {
     let photo = Pixels { width: width as u32, height: height as u32, rgba: rgba.collect() };
     let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
     let rect = ImageRect::of_photo(photo.width, photo.height);
-    let picture = Picture::new(&photo, &camera, &rect, None).unwrap();
+    let picture = Picture::new(&photo, &camera, &rect, None, LARGEST_OBJECT_PX).unwrap();
     let ids = columns.map(|x| if x < to { OBJECT_ID } else { 0 }).collect();
     let image =
         RasterImage { width: photo.width, height: photo.height, depth_mm: vec![500.0; width * height], ids };
