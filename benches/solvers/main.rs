@@ -9,14 +9,23 @@
 )]
 
 mod chance;
+mod contour;
 mod numbers;
 mod opencv;
 mod photos;
 mod pins;
 mod real;
+mod shapes;
 mod snap;
+mod symmetry;
 
-const PARTS: [(&str, fn()); 3] = [("pins", pins::pins), ("snap", snap::snap), ("real-snap", real::real)];
+const PARTS: [(&str, fn()); 5] = [
+    ("pins", pins::pins),
+    ("contour", contour::contour),
+    ("symmetry", symmetry::symmetry),
+    ("snap", snap::snap),
+    ("real-snap", real::real),
+];
 
 fn main() {
     let named: Vec<String> = std::env::args().skip(1).filter(|name| !name.starts_with('-')).collect();
