@@ -101,11 +101,15 @@ fn focal_slider(ui: &mut Ui, session: &Session, photo: &Photo, commands: &mut Ve
     let mut fx = photo.camera.fx;
     let long_side_px = f64::from(photo.camera.width.max(photo.camera.height));
     let [shortest, longest] = FOCAL_RANGE.map(|part| part * long_side_px);
-    ui.spacing_mut().slider_width = ui.available_width();
     let range = shortest.min(fx)..=longest.max(fx);
     let slider = Slider::new(&mut fx, range).logarithmic(true).show_value(false);
-    let response = ui.add(slider).on_hover_text(
-        "The focal length by eye: objects keep their place and size in the picture and move nearer or farther with it",
+    let shown = ui.horizontal(|ui| {
+        ui.label("Focal length");
+        ui.spacing_mut().slider_width = ui.available_width();
+        ui.add(slider)
+    });
+    let response = shown.inner.on_hover_text(
+        "By eye: objects keep their place and size in the picture and move nearer or farther with the focal length",
     );
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Focal length with depth"));
     if response.drag_started() {
