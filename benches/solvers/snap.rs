@@ -34,7 +34,7 @@ pub fn snap() {
         Ok(objects) => objects,
         Err(reason) => return println!("Snap: left out, {reason}"),
     };
-    println!("Snap on made photos: 14 cm at 0.8 m, {ROUNDS} starts each, seed 2; mm and degrees");
+    println!("Snap on made photos: 14 cm at 0.8 m, {ROUNDS} starts each, seed 6; mm and degrees");
     header();
     let near = (10.0, 10.0, 0.04);
     snap_all("10°, 10 px, 4 %", &objects, near, SnapReach::Near);
@@ -46,7 +46,7 @@ fn camera() -> Intrinsics {
 }
 
 fn snap_all(name: &str, objects: &[Object], off: (f64, f64, f64), reach: SnapReach) {
-    let mut chance = Chance(2);
+    let mut chance = Chance(6);
     let mut runs = Vec::new();
     let mut deviations = Vec::new();
     for object in objects {

@@ -335,8 +335,9 @@ fn covariance(end: &Ended) -> Option<TwistCovariance> {
     Some(TwistCovariance::from_steps_about(end.pivot_camera_mm, &covariance))
 }
 
-/// Set on made photos (the benchmark's, from another seed) so that the truth is within one standard deviation along each axis
-/// in 68 % and within 1.96 in 95 % of snaps, or as near to both as errors with longer tails than normal ones come.
+/// Set on made photos (the benchmark's with seed 2; it reports another one) so that the truth is within one standard deviation
+/// along each axis in 68 % and within 1.96 in 95 % of snaps, or as near to both as errors with longer tails than normal ones
+/// come.
 const COVARIANCE_SCALE: f64 = 1.12;
 const OUTLINE_BIAS_PX: f64 = 0.06;
 const SURE_SCORE: f64 = 0.68;
