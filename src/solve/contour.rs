@@ -230,7 +230,7 @@ impl ContourModel {
             }
             until_next -= length;
         }
-        points
+        outermost(points, spacing_px)
     }
 
     fn visible_point(&self, edge: &Edge, seen: &Seen<'_>, point_mm: DVec3) -> Option<ContourPoint> {
@@ -278,6 +278,39 @@ impl ContourModel {
         if direction.dot(point_mm - (a + b + c) / 3.0) < 0.0 { -direction } else { direction }
     }
 }
+
+/// Where a bumpy surface is seen edge-on, several of its silhouette edges lie side by side within a pixel or two, and the
+/// depth map cannot tell which of them hides the others. The object ends at the outermost; points on the others are left out.
+fn outermost(mut points: Vec<ContourPoint>, spacing_px: f64) -> Vec<ContourPoint> {
+    points.sort_by(|a, b| a.pixel.x.total_cmp(&b.pixel.x));
+    let beside_px = BESIDE_PX.max(spacing_px);
+    let is_outermost = |number: usize| {
+        let point = &points[number];
+        let is_near = |other: &&ContourPoint| (other.pixel.x - point.pixel.x).abs() < FARTHEST_OUT_PX;
+        let before = points[..number].iter().rev().take_while(is_near);
+        let after = points[number + 1..].iter().take_while(is_near);
+        !before.chain(after).any(|other| {
+            let offset = other.pixel - point.pixel;
+            let outward_px = offset.dot(point.normal);
+            other.kind == point.kind
+                && (NEAREST_OUT_PX..FARTHEST_OUT_PX).contains(&outward_px)
+                && offset.perp_dot(point.normal).abs() < beside_px
+                && other.normal.dot(point.normal) > 0.5
+        })
+    };
+    let keep: Vec<bool> = (0..points.len())
+        .map(|number| points[number].kind == EdgeKind::Crease || is_outermost(number))
+        .collect();
+    let mut keep = keep.into_iter();
+    points.retain(|_| keep.next().unwrap_or(false));
+    points
+}
+
+/// A point this far out or farther hides one, and not one that is farther: that is another part of the object.
+const NEAREST_OUT_PX: f64 = 0.3;
+const FARTHEST_OUT_PX: f64 = 3.0;
+/// How far to its side it may be, or as far as the next point.
+const BESIDE_PX: f64 = 1.0;
 
 /// What is the same for all points of an edge.
 struct Seen<'a> {

@@ -6,7 +6,7 @@
 pub type Matrix<const N: usize> = [[f64; N]; N];
 
 /// The lower factor L of `a = L Lᵀ`; `None` where `a` is not positive definite to working precision.
-fn cholesky<const N: usize>(a: &Matrix<N>) -> Option<Matrix<N>> {
+pub fn cholesky<const N: usize>(a: &Matrix<N>) -> Option<Matrix<N>> {
     let mut lower = [[0.0; N]; N];
     for i in 0..N {
         for j in 0..=i {

@@ -60,6 +60,28 @@ fn fitness(picture: &Picture, colors: &ColorModel, point: &ContourPoint, offset_
     1.0 / (1.0 + (0.5 * (odds(1.0) - odds(-1.0))).exp())
 }
 
+/// Where the mask's border is across each point of the outline: the nearest one within `reach_px` with the mask on the object's
+/// side. Nothing without a mask.
+pub fn follow_mask(picture: &Picture, points: &[ContourPoint], reach_px: f64) -> Vec<Pull> {
+    let outline = points.iter().filter(|point| point.kind == EdgeKind::Outline);
+    outline.filter_map(|point| mask_border(picture, point, reach_px)).collect()
+}
+
+fn mask_border(picture: &Picture, point: &ContourPoint, reach_px: f64) -> Option<Pull> {
+    let is_object = |offset_px: f64| {
+        picture.index(point.pixel + point.normal * offset_px).and_then(|index| picture.masked(index))
+    };
+    let steps = (2.0 * reach_px) as i32;
+    let borders = (-steps..steps)
+        .map(|half| 0.5 * f64::from(half) + 0.25)
+        .filter(|border| is_object(border - 0.25) == Some(true) && is_object(border + 0.25) == Some(false));
+    let nearest = borders.min_by(|a, b| a.abs().total_cmp(&b.abs()));
+    nearest.map(|offset_px| Pull { point: *point, offset_px, variance_px: MASK_SIGMA_PX * MASK_SIGMA_PX })
+}
+
+/// Masks have whole pixels, and are drawn by hands.
+const MASK_SIGMA_PX: f64 = 0.7;
+
 /// Samples per pixel along the line of an exact measurement.
 const COVERAGE_STEPS_PER_PX: usize = 2;
 /// Of object and background on a line, to tell them apart: in linear light.

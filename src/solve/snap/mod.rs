@@ -1,22 +1,22 @@
 //! Snap: from a rough pose to the one that the photo supports best.
 //!
-//! Colour statistics on either side of the outline pull from afar (after Stoiber et al., *SRT3D*, 2022), edges from near
-//! (after Drummond and Cipolla, 2002), and where the background is clear the last steps measure the outline's exact place.
-//! There the surface within the outline is compared with what it should look like, too. Where to begin is searched for in a
-//! small copy of the photo. Pins pull in the same equations. It is a state machine: each step is short, so that no frame is late.
+//! Where to begin is searched for in a small copy of the photo, and the best places that are found are refined. Edges pull
+//! (after Drummond and Cipolla, 2002); where the background is clear, the outline's exact place is measured; and the surface
+//! within the outline is compared with what it should look like. Pins pull in the same equations. It is a state machine:
+//! each step is short, so that no frame is late.
 
 mod colors;
 mod edges;
-mod lines;
 mod look;
+mod measurements;
 mod palette;
 mod picture;
 mod prior;
 mod pull;
+mod refinement;
 mod score;
 mod search;
 mod sight;
-mod stages;
 mod surface;
 
 use std::fmt;
@@ -24,7 +24,6 @@ use std::sync::Arc;
 
 use super::TwistCovariance;
 use super::contour::ContourModel;
-use super::least_squares::NormalEquations;
 use super::linear::inverse;
 use super::pins::Pin;
 use crate::math::{Intrinsics, Pose};
@@ -33,9 +32,9 @@ use crate::raster::Mask;
 use crate::scene::DepthInMm;
 use look::{Density, Look};
 use prior::Prior;
+use refinement::{Evidence, Refinement};
 use search::Search;
 use sight::{Given, Sight};
-use stages::{Ended, Evidence, Refinement};
 
 pub use score::SnapScore;
 
@@ -135,7 +134,7 @@ pub struct Snap {
     /// `None` until the start was scored.
     score_before: Option<f64>,
     search: Search,
-    /// From each place that was found; after the first phase the best are left.
+    /// From each place that was found; when they were rated, the best are left.
     refinements: Vec<Refinement>,
     current: usize,
     phase: Phase,
@@ -145,8 +144,8 @@ pub struct Snap {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     Search,
-    Coarse,
-    Fine,
+    Rate,
+    Refine,
 }
 
 /// The photo at the sizes that are looked at.
@@ -224,9 +223,8 @@ impl Snap {
 
     /// With one for the start's score, and one for each choice of the best.
     fn steps_in_all(&self) -> u32 {
-        let [refined, kept] = stages::kept(self.prior.reach).map(|count| count as u32);
-        let steps = |is_fine| stages::steps(self.prior.reach, is_fine);
-        self.search.steps() + refined * steps(false) + kept * steps(true) + 4
+        let [rated, refined] = refinement::kept(self.prior.reach).map(|count| count as u32);
+        self.search.steps() + rated + refined * (refinement::STEPS + 1) + 4
     }
 
     /// One iteration; the outcome after the last.
@@ -244,34 +242,36 @@ impl Snap {
                 self.search.advance(&sights.small, &self.model, &self.prior);
             }
             Phase::Search => {
-                let [refined, _] = stages::kept(self.prior.reach);
-                let found = self.search.best(refined, &self.prior);
+                let [rated, _] = refinement::kept(self.prior.reach);
+                let found = self.search.best(rated, &self.prior);
                 self.refinements = found.into_iter().map(Refinement::from).collect();
-                self.phase = Phase::Coarse;
+                self.phase = Phase::Rate;
             }
-            Phase::Coarse | Phase::Fine if self.current < self.refinements.len() => self.refine(&sights.fine),
-            Phase::Coarse => self.keep_best(),
-            Phase::Fine => return Some(self.finish()),
+            Phase::Rate | Phase::Refine if self.current < self.refinements.len() => self.work(&sights.fine),
+            Phase::Rate => self.keep_best(),
+            Phase::Refine => return Some(self.finish()),
         }
         None
     }
 
-    fn refine(&mut self, sight: &Sight) {
+    fn work(&mut self, sight: &Sight) {
         let Some(refinement) = self.refinements.get_mut(self.current) else { return };
-        let stages = stages::stages(self.prior.reach, self.phase == Phase::Fine);
-        let scene = stages::Scene { sight, model: &self.model, prior: &self.prior };
-        if refinement.advance(&scene, stages) {
-            self.current += 1;
-        }
+        let scene = refinement::Scene { sight, model: &self.model, prior: &self.prior };
+        let is_done = match self.phase {
+            Phase::Refine => refinement.advance(&scene),
+            Phase::Search | Phase::Rate => {
+                refinement.rate(&scene);
+                true
+            }
+        };
+        self.current += usize::from(is_done);
     }
 
     fn keep_best(&mut self) {
-        let [_, kept] = stages::kept(self.prior.reach);
-        self.refinements.retain(|refinement| refinement.best().is_some());
-        self.refinements.sort_by(|a, b| b.last_score().total_cmp(&a.last_score()));
-        self.refinements.truncate(kept);
-        self.refinements.iter_mut().for_each(Refinement::rewind);
-        (self.phase, self.current) = (Phase::Fine, 0);
+        let [_, refined] = refinement::kept(self.prior.reach);
+        self.refinements.sort_by(|a, b| b.score.total_cmp(&a.score));
+        self.refinements.truncate(refined);
+        (self.phase, self.current) = (Phase::Refine, 0);
     }
 
     fn refused(&self, verdict: SnapVerdict) -> SnapOutcome {
@@ -287,10 +287,9 @@ impl Snap {
         }
     }
 
-    /// Compares where the stages ended with the start: later stages are more exact where the photo is clear, and led astray
-    /// where it is not.
+    /// Compares where the best refinement ended with the start.
     fn finish(&self) -> SnapOutcome {
-        let ends = self.refinements.iter().filter_map(Refinement::best);
+        let ends = self.refinements.iter().filter(|refinement| refinement.score.is_finite());
         let Some(best) = ends.max_by(|a, b| a.score.total_cmp(&b.score)) else {
             return self.refused(SnapVerdict::OutOfView);
         };
@@ -320,29 +319,27 @@ impl Snap {
     }
 }
 
-/// Of the normal equations where a stage ended, scaled by how well they are fulfilled, and of what a shift of the whole
-/// outline would do, which does not average out. A pose of a low score is more often than not beside the truth by more than
-/// its neighbourhood tells.
-fn covariance(end: &Ended) -> Option<TwistCovariance> {
-    let Evidence { equations: NormalEquations { h, cost, .. }, pulls, outward } = &end.evidence;
+/// Of the normal equations where a refinement ended, and of what a shift of the whole outline would do, which does not average
+/// out. A pose of a low score is more often than not beside the truth by more than its neighbourhood tells.
+fn covariance(end: &Refinement) -> Option<TwistCovariance> {
+    let Evidence { equations, pivot_camera_mm, outward } = end.evidence.as_ref()?;
     let doubt = (SURE_SCORE / end.score).max(1.0).powi(8);
-    let scale = COVARIANCE_SCALE * doubt * (cost / pulls.max(1.0)).max(SMALLEST_RESIDUAL);
-    let inverse = inverse(h)?;
-    let shift = |row: &[f64; 6]| row.iter().zip(outward).map(|(a, b)| a * b).sum::<f64>() * OUTLINE_BIAS_PX;
+    let inverse = inverse(&equations.h)?;
+    let shift = |row: &[f64; 6]| row.iter().zip(outward).map(|(a, b)| a * b).sum::<f64>() * OUTLINE_BIAS;
     let bias = inverse.map(|row| shift(&row));
-    let covariance =
-        std::array::from_fn(|i| std::array::from_fn(|j| scale * inverse[i][j] + doubt * bias[i] * bias[j]));
-    Some(TwistCovariance::from_steps_about(end.pivot_camera_mm, &covariance))
+    let covariance = std::array::from_fn(|i| {
+        std::array::from_fn(|j| doubt * (COVARIANCE_SCALE * inverse[i][j] + bias[i] * bias[j]))
+    });
+    Some(TwistCovariance::from_steps_about(*pivot_camera_mm, &covariance))
 }
 
 /// Set on made photos (the benchmark's with seed 2; it reports another one) so that the truth is within one standard deviation
 /// along each axis in 68 % and within 1.96 in 95 % of snaps, or as near to both as errors with longer tails than normal ones
 /// come.
-const COVARIANCE_SCALE: f64 = 1.12;
-const OUTLINE_BIAS_PX: f64 = 0.06;
-const SURE_SCORE: f64 = 0.68;
-/// Residuals far below their variances are luck.
-const SMALLEST_RESIDUAL: f64 = 0.05;
+const COVARIANCE_SCALE: f64 = 0.22;
+/// In standard deviations of a measurement.
+const OUTLINE_BIAS: f64 = 0.2;
+const SURE_SCORE: f64 = 0.75;
 
 /// How well a photo agrees with a pose as it is; `None` where too little of the object is in it.
 pub fn score_of(

@@ -156,8 +156,11 @@ impl Picture {
         (x * normal[0] + y * normal[1]).abs()
     }
 
-    /// The number of a pixel's colour in the palette.
+    /// The number of a pixel's colour in the palette; with a mask, whether the pixel is in it.
     pub fn label(&self, index: usize) -> usize {
+        if let Some(is_object) = self.masked(index) {
+            return usize::from(is_object);
+        }
         usize::from(self.palette.labels.get(index).copied().unwrap_or_default()) % COLORS
     }
 

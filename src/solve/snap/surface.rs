@@ -8,15 +8,16 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::look::Look;
+use super::measurements::Measurement;
 use super::picture::Picture;
 use crate::math::Pose;
 use crate::solve::contour::{ContourModel, OBJECT_ID};
 use crate::solve::least_squares::NormalEquations;
-use crate::solve::linear::{Matrix, inverse, solve};
+use crate::solve::linear::{Matrix, cholesky, inverse, solve};
 use crate::solve::motion::{motion_row, project_with_jacobian, turn_row};
 
 /// Nearer than this to what is not the object, a pixel may show something else.
-const BORDER_PX: usize = 2;
+const BORDER_PX: usize = 3;
 const FEWEST_PIXELS: usize = 60;
 /// About as many pixels teach the light, and as many pull.
 const TEACHING_PIXELS: usize = 500;
@@ -25,6 +26,8 @@ const PULLING_PIXELS: usize = 1000;
 const GATE: f64 = 3.0;
 /// Standard deviations below this are luck: a channel has steps of 1/255.
 const SMALLEST_SIGMA: f64 = 0.01;
+/// Slopes of the prediction that are steeper than this, in standard deviations a pixel, are steps.
+const STEEPEST: f64 = 2.0;
 const ROUNDS: usize = 4;
 /// What each coefficient of the light is held to zero with, as a part of the pixels' weight.
 const RIDGE: f64 = 1e-3;
@@ -76,35 +79,62 @@ impl Spot {
     }
 }
 
-/// Adds what the object's inner pixels want to the normal equations of small motions of `pose` about `pivot_camera_mm`, and
-/// returns for how many measurements that counts. `share` is what part of a measurement each pixel is.
-pub fn add_surface(
-    equations: &mut NormalEquations<6>,
+/// What the object's inner pixels want of small motions of `pose` about `pivot_camera_mm`; nothing where there are too few.
+pub fn measurements(
     picture: &Picture,
     (look, model): (&Look, &ContourModel),
     (pose, pivot_camera_mm): (&Pose, DVec3),
-    share: f64,
-) -> f64 {
+) -> Vec<Measurement> {
     let spots = spots(picture, look, model, pose);
     let inner: Vec<&Spot> = spots.iter().filter(|spot| spot.is_inner).collect();
     if inner.len() < FEWEST_PIXELS {
-        return 0.0;
+        return Vec::new();
     }
     let teaching: Vec<&Spot> =
         inner.iter().copied().step_by((inner.len() / TEACHING_PIXELS).max(1)).collect();
-    let Some((light, precision)) = fit_light(picture, &teaching) else { return 0.0 };
+    let Some((light, whitening)) = fit_light(picture, &teaching) else { return Vec::new() };
     let mut predicted = vec![None; picture.width * picture.height];
     for spot in &spots {
         predicted[spot.index] = Some(spot.predicted(&light));
     }
     let every = (inner.len() / PULLING_PIXELS).max(1);
-    let weight = share * every as f64;
-    for spot in inner.into_iter().step_by(every) {
-        let rows = slopes(picture, &predicted, spot, &light, pivot_camera_mm);
-        let Some(rows) = rows else { continue };
-        add_pixel(equations, &rows, &spot.difference(picture, &light), &precision, weight);
+    let with_slopes = |spot| {
+        let in_picture = picture_slopes(picture, &predicted, spot)?;
+        is_even(&in_picture, &whitening)
+            .then(|| Some((spot, slopes(picture, &in_picture, spot, &light, pivot_camera_mm)?)))?
+    };
+    let mut pulling: Vec<(&Spot, [[f64; 6]; 3])> =
+        inner.into_iter().step_by(every).filter_map(with_slopes).collect();
+    (0..3).for_each(|channel| leave_to_light(&mut pulling, channel));
+    let measurements = pulling
+        .iter()
+        .map(|(spot, rows)| pixel_measurements(rows, &spot.difference(picture, &light), &whitening));
+    measurements.flatten().collect()
+}
+
+/// Takes out of the slopes of a channel what another light would explain as well: the light is fitted anew after each step, so
+/// that says nothing of the pose (variable projection: Golub and Pereyra, 1973).
+fn leave_to_light(pulling: &mut [(&Spot, [[f64; 6]; 3])], channel: usize) {
+    let mut features = [[0.0; FEATURES]; FEATURES];
+    let mut mixed = [[0.0; FEATURES]; 6];
+    for (spot, rows) in pulling.iter() {
+        let of_spot = spot.features(channel);
+        for (sums, a) in features.iter_mut().zip(of_spot) {
+            sums.iter_mut().zip(of_spot).for_each(|(sum, b)| *sum += a * b);
+        }
+        for (sums, slope) in mixed.iter_mut().zip(rows[channel]) {
+            sums.iter_mut().zip(of_spot).for_each(|(sum, feature)| *sum += slope * feature);
+        }
     }
-    share * spots.len() as f64
+    let ridge = RIDGE * pulling.len() as f64;
+    (0..FEATURES).for_each(|i| features[i][i] += ridge);
+    let explained = mixed.map(|sums| solve(&features, &sums).unwrap_or_default());
+    for (spot, rows) in pulling {
+        let of_spot = spot.features(channel);
+        for (slope, weights) in rows[channel].iter_mut().zip(&explained) {
+            *slope -= weights.iter().zip(of_spot).map(|(weight, feature)| weight * feature).sum::<f64>();
+        }
+    }
 }
 
 /// All pixels on which the object is seen.
@@ -135,8 +165,8 @@ fn spots(picture: &Picture, look: &Look, model: &ContourModel, pose: &Pose) -> V
     spots
 }
 
-/// The light that explains these pixels best, and the inverse covariance of what it leaves unexplained. `None` where they
-/// are too uniform.
+/// The light that explains these pixels best, and the upper factor of the inverse covariance of what it leaves unexplained:
+/// times such a difference it has channels that are independent. `None` where the pixels are too uniform.
 fn fit_light(picture: &Picture, spots: &[&Spot]) -> Option<(Light, Matrix<3>)> {
     let mut weights = vec![1.0; spots.len()];
     let mut light = [[0.0; FEATURES]; 3];
@@ -166,7 +196,8 @@ fn fit_light(picture: &Picture, spots: &[&Spot]) -> Option<(Light, Matrix<3>)> {
         // Channels that go together exactly would make their difference seem exact.
         row[channel] = 1.1 * row[channel] + 0.25 * SMALLEST_SIGMA * SMALLEST_SIGMA;
     }
-    Some((light, inverse(&covariance)?))
+    let lower = cholesky(&inverse(&covariance)?)?;
+    Some((light, std::array::from_fn(|row| std::array::from_fn(|column| lower[column][row]))))
 }
 
 fn fit_channel(
@@ -195,48 +226,58 @@ fn biweight(squared: f64) -> f64 {
     (1.0 - squared / (GATE * GATE)).max(0.0).powi(2)
 }
 
+/// How the prediction changes from a pixel to the next, along x and y; `None` where a neighbour is not on the object.
+fn picture_slopes(picture: &Picture, predicted: &[Option<[f64; 3]>], spot: &Spot) -> Option<[[f64; 3]; 2]> {
+    let slope = |stride: usize| {
+        let (before, after) = (predicted[spot.index - stride]?, predicted[spot.index + stride]?);
+        Some(std::array::from_fn(|c| 0.5 * (after[c] - before[c])))
+    };
+    Some([slope(1)?, slope(picture.width)?])
+}
+
+/// Where the prediction makes a step, a pixel on the right side of it wants to stay and one on the wrong side is gated: the
+/// contour's edges are for that.
+fn is_even(slopes: &[[f64; 3]; 2], whitening: &Matrix<3>) -> bool {
+    slopes.iter().all(|slope| {
+        let whitened = whitening.map(|row| row.iter().zip(slope).map(|(a, b)| a * b).sum::<f64>());
+        whitened.iter().map(|value| value * value).sum::<f64>() < 3.0 * STEEPEST * STEEPEST
+    })
+}
+
 /// How a pixel's differences change with small motions: what the motion brings to the pixel is the prediction beside it,
-/// under another light. `None` where a neighbour is not on the object.
+/// under another light.
 fn slopes(
     picture: &Picture,
-    predicted: &[Option<[f64; 3]>],
+    [by_column, by_row]: &[[f64; 3]; 2],
     spot: &Spot,
     light: &Light,
     pivot_camera_mm: DVec3,
 ) -> Option<[[f64; 6]; 3]> {
     let (_, [by_x, by_y]) = project_with_jacobian(&picture.camera, spot.point_camera_mm)?;
-    let (left, right) = (predicted[spot.index - 1]?, predicted[spot.index + 1]?);
-    let (above, below) = (predicted[spot.index - picture.width]?, predicted[spot.index + picture.width]?);
     Some(std::array::from_fn(|c| {
-        let (slope_x, slope_y) = (0.5 * (right[c] - left[c]), 0.5 * (below[c] - above[c]));
-        let moved = motion_row(spot.point_camera_mm - pivot_camera_mm, by_x * slope_x + by_y * slope_y);
+        let gradient = by_x * by_column[c] + by_y * by_row[c];
+        let moved = motion_row(spot.point_camera_mm - pivot_camera_mm, gradient);
         let turned = turn_row(spot.normal, spot.normal_slope(light, c));
         std::array::from_fn(|k| moved[k] - turned[k])
     }))
 }
 
-fn add_pixel(
-    equations: &mut NormalEquations<6>,
+/// One for each channel, after `whitening` made them independent.
+fn pixel_measurements(
     rows: &[[f64; 6]; 3],
     difference: &[f64; 3],
-    precision: &Matrix<3>,
-    weight: f64,
-) {
-    let weighted = precision.map(|row| row.iter().zip(difference).map(|(p, d)| p * d).sum::<f64>());
-    let squared: f64 = weighted.iter().zip(difference).map(|(a, b)| a * b).sum();
-    let weight = weight * biweight(squared / 3.0);
-    if weight == 0.0 {
-        return;
-    }
-    equations.cost += weight * squared;
-    for (i, row) in rows.iter().enumerate() {
-        let whitened: [f64; 6] =
-            std::array::from_fn(|k| (0..3).map(|j| precision[i][j] * rows[j][k]).sum::<f64>() * weight);
-        for ((h_row, g), value) in equations.h.iter_mut().zip(&mut equations.g).zip(row) {
-            *g += weight * value * weighted[i];
-            h_row.iter_mut().zip(&whitened).for_each(|(h, other)| *h += value * other);
-        }
-    }
+    whitening: &Matrix<3>,
+) -> [Measurement; 3] {
+    let mix =
+        |weights: &[f64; 3], values: [f64; 3]| weights.iter().zip(values).map(|(a, b)| a * b).sum::<f64>();
+    let residuals = whitening.map(|weights| mix(&weights, *difference));
+    let squared: f64 = residuals.iter().map(|residual| residual * residual).sum();
+    std::array::from_fn(|c| Measurement {
+        row: std::array::from_fn(|k| mix(&whitening[c], [rows[0][k], rows[1][k], rows[2][k]])),
+        residual: residuals[c],
+        trust: biweight(squared / 3.0),
+        is_outline: false,
+    })
 }
 
 #[cfg(test)]

@@ -156,22 +156,17 @@ fn two_halves(to: usize) -> (Picture, DepthView, Vec<ContourPoint>) {
 }
 
 #[test]
-fn a_straight_border_is_found_by_its_colours_and_by_its_edge() {
+fn a_straight_border_is_found_by_its_edge() {
     for (to, is_better) in [(56, false), (60, true), (63, false)] {
         let (picture, view, points) = two_halves(to);
         let colors =
             ColorModel::learn(&picture, &view, &points, Band { unsure_px: 5.0, reach_px: 40.0 }).unwrap();
         let wanted = 60.0 - to as f64;
-        for (pulls, tolerance_px) in [
-            // A step that is smooth over more than a pixel is not placed better than this near the line's end.
-            (lines::search(&picture, &view, &colors, &points, 1), 0.6),
+        let pulls = edges::search(&picture, &colors, &points, 6.0);
+        assert_eq!(pulls.len(), points.len());
+        for pull in pulls {
             // The parabola through three samples of an even slope.
-            (edges::search(&picture, &colors, &points, 6.0), 0.1),
-        ] {
-            assert_eq!(pulls.len(), points.len());
-            for pull in pulls {
-                assert!((pull.offset_px - wanted).abs() < tolerance_px, "{} {wanted}", pull.offset_px);
-            }
+            assert!((pull.offset_px - wanted).abs() < 0.1, "{} {wanted}", pull.offset_px);
         }
         let score = score::score(&picture, &view, &colors, &points);
         assert_eq!(score.regions > 0.75 && score.edges > 0.5, is_better, "{score:?}");
@@ -230,7 +225,7 @@ fn covered(photo: &Pixels, columns: u32) -> (Pixels, DepthInMm) {
 
 #[test]
 fn a_depth_map_says_what_is_before_the_object() {
-    let (picture, depth) = covered(&photo(&truth(), 1.0), 140);
+    let (picture, depth) = covered(&photo(&truth(), 1.0), 112);
     let depth = Arc::new(depth);
     let mut chance = Chance(8);
     let mut errors = [Vec::new(), Vec::new()];
