@@ -1,5 +1,7 @@
 //! What a pose looks like in a picture.
 
+use glam::DVec3;
+
 use super::colors::{Band, ColorModel};
 use super::picture::Picture;
 use super::score::{SnapScore, score};
@@ -48,6 +50,14 @@ impl Look {
         let unsure_px = unsure_px.min((0.06 * self.size_px).max(1.0));
         let reach_px = self.size_px.clamp(12.0, 60.0);
         ColorModel::learn(picture, &self.view, &self.points, Band { unsure_px, reach_px })
+    }
+
+    /// About how far a step (a turn, then a shift) moves the object's contour, if its middle is so far off.
+    pub fn motion_px(&self, step: &[f64; 6], distance_mm: f64, picture: &Picture) -> f64 {
+        let [rx, ry, rz, x, y, z] = *step;
+        let radius_px = 0.5 * self.size_px;
+        let shift_px = picture.camera.focal_px() * x.hypot(y) / distance_mm;
+        shift_px + radius_px * (DVec3::new(rx, ry, rz).length() + (z / distance_mm).abs())
     }
 
     /// `None` where too little of the object is in the picture.

@@ -36,6 +36,8 @@ const UNSURE_PX: f64 = 1.5;
 /// With fewer points of an outline there is nothing to hold on to.
 const FEWEST_POINTS: usize = 12;
 
+/// A step that moves the contour by less is the last.
+const SMALLEST_STEP_PX: f64 = 0.02;
 /// Steps of a refinement at most.
 pub const STEPS: u32 = 8;
 
@@ -130,7 +132,7 @@ impl Refinement {
         }
         self.pose = moved;
         self.evidence = Some(Evidence { equations, pivot_camera_mm, outward: outward(&kinds) });
-        true
+        look.motion_px(&step, pivot_camera_mm.z, picture) > SMALLEST_STEP_PX || self.step < FIRST_STEPS
     }
 
     /// All that the picture says of the present pose; `None` where colours cannot be told apart.

@@ -19,16 +19,15 @@ use crate::solve::motion::{motion_row, project_with_jacobian, turn_row};
 /// Nearer than this to what is not the object, a pixel may show something else.
 const BORDER_PX: usize = 3;
 const FEWEST_PIXELS: usize = 60;
-/// About as many pixels teach the light, and as many pull.
-const TEACHING_PIXELS: usize = 500;
-const PULLING_PIXELS: usize = 1000;
+/// About as many pixels teach the light and pull.
+const PIXELS: usize = 400;
 /// Differences larger than this many standard deviations count nothing (Tukey's biweight).
 const GATE: f64 = 3.0;
 /// Standard deviations below this are luck: a channel has steps of 1/255.
 const SMALLEST_SIGMA: f64 = 0.01;
 /// Slopes of the prediction that are steeper than this, in standard deviations a pixel, are steps.
 const STEEPEST: f64 = 2.0;
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 3;
 /// What each coefficient of the light is held to zero with, as a part of the pixels' weight.
 const RIDGE: f64 = 1e-3;
 
@@ -43,7 +42,6 @@ struct Spot {
     /// In camera axes.
     normal: DVec3,
     albedo: Vec3,
-    is_inner: bool,
 }
 
 impl Spot {
@@ -85,31 +83,71 @@ pub fn measurements(
     (look, model): (&Look, &ContourModel),
     (pose, pivot_camera_mm): (&Pose, DVec3),
 ) -> Vec<Measurement> {
-    let spots = spots(picture, look, model, pose);
-    let inner: Vec<&Spot> = spots.iter().filter(|spot| spot.is_inner).collect();
+    let surface = Surface { picture, look, model, pose, object_from_camera: pose.inverse() };
+    let inner = surface.inner_pixels();
     if inner.len() < FEWEST_PIXELS {
         return Vec::new();
     }
-    let teaching: Vec<&Spot> =
-        inner.iter().copied().step_by((inner.len() / TEACHING_PIXELS).max(1)).collect();
-    let Some((light, whitening)) = fit_light(picture, &teaching) else { return Vec::new() };
-    let mut predicted = vec![None; picture.width * picture.height];
-    for spot in &spots {
-        predicted[spot.index] = Some(spot.predicted(&light));
-    }
-    let every = (inner.len() / PULLING_PIXELS).max(1);
+    let every = (inner.len() / PIXELS).max(1);
+    let spots: Vec<Spot> = inner.into_iter().step_by(every).filter_map(|index| surface.spot(index)).collect();
+    let Some((light, whitening)) = fit_light(picture, &spots) else { return Vec::new() };
     let with_slopes = |spot| {
-        let in_picture = picture_slopes(picture, &predicted, spot)?;
-        is_even(&in_picture, &whitening)
-            .then(|| Some((spot, slopes(picture, &in_picture, spot, &light, pivot_camera_mm)?)))?
+        let in_picture = surface.picture_slopes(spot, &light)?;
+        let rows = slopes(picture, &in_picture, spot, &light, pivot_camera_mm)?;
+        is_even(&in_picture, &whitening).then_some((spot, rows))
     };
-    let mut pulling: Vec<(&Spot, [[f64; 6]; 3])> =
-        inner.into_iter().step_by(every).filter_map(with_slopes).collect();
+    let mut pulling: Vec<(&Spot, [[f64; 6]; 3])> = spots.iter().filter_map(with_slopes).collect();
     (0..3).for_each(|channel| leave_to_light(&mut pulling, channel));
     let measurements = pulling
         .iter()
         .map(|(spot, rows)| pixel_measurements(rows, &spot.difference(picture, &light), &whitening));
     measurements.flatten().collect()
+}
+
+/// The object as it would be seen in a pose.
+struct Surface<'a> {
+    picture: &'a Picture,
+    look: &'a Look,
+    model: &'a ContourModel,
+    pose: &'a Pose,
+    object_from_camera: Pose,
+}
+
+impl Surface<'_> {
+    /// Numbers of the pixels that show the object and nothing else.
+    fn inner_pixels(&self) -> Vec<usize> {
+        let (width, height) = (self.picture.width, self.picture.height);
+        let ids = &self.look.view.image.ids;
+        let is_inner = |&index: &usize| {
+            [0, BORDER_PX, BORDER_PX * width]
+                .iter()
+                .all(|away| ids[index - away] == OBJECT_ID && ids[index + away] == OBJECT_ID)
+        };
+        let rows = BORDER_PX..height.saturating_sub(BORDER_PX);
+        let columns = BORDER_PX..width.saturating_sub(BORDER_PX);
+        rows.flat_map(|y| columns.clone().map(move |x| y * width + x)).filter(is_inner).collect()
+    }
+
+    /// `None` where the object is not seen.
+    fn spot(&self, index: usize) -> Option<Spot> {
+        let face = self.look.faces.get(index)?.checked_sub(1)?;
+        let pixel = DVec2::new((index % self.picture.width) as f64, (index / self.picture.width) as f64);
+        let ray = self.picture.camera.unproject(pixel);
+        let point_camera_mm = ray * (f64::from(*self.look.view.image.depth_mm.get(index)?) / ray.z);
+        let point_mm = self.object_from_camera.transform_point(point_camera_mm);
+        let (normal, albedo) = self.model.shade_at(face as usize, point_mm)?;
+        Some(Spot { index, point_camera_mm, normal: self.pose.rotation * normal, albedo })
+    }
+
+    /// How the prediction changes from a pixel to the next, along x and y; `None` where a neighbour is not on the object.
+    fn picture_slopes(&self, spot: &Spot, light: &Light) -> Option<[[f64; 3]; 2]> {
+        let slope = |stride: usize| {
+            let [before, after] = [spot.index.checked_sub(stride)?, spot.index + stride];
+            let (before, after) = (self.spot(before)?.predicted(light), self.spot(after)?.predicted(light));
+            Some(std::array::from_fn(|c| 0.5 * (after[c] - before[c])))
+        };
+        Some([slope(1)?, slope(self.picture.width)?])
+    }
 }
 
 /// Takes out of the slopes of a channel what another light would explain as well: the light is fitted anew after each step, so
@@ -137,37 +175,9 @@ fn leave_to_light(pulling: &mut [(&Spot, [[f64; 6]; 3])], channel: usize) {
     }
 }
 
-/// All pixels on which the object is seen.
-fn spots(picture: &Picture, look: &Look, model: &ContourModel, pose: &Pose) -> Vec<Spot> {
-    let (width, height) = (picture.width, picture.height);
-    let object_from_camera = pose.inverse();
-    let ids = &look.view.image.ids;
-    let mut spots = Vec::new();
-    for y in BORDER_PX..height.saturating_sub(BORDER_PX) {
-        for x in BORDER_PX..width.saturating_sub(BORDER_PX) {
-            let index = y * width + x;
-            let Some(face) = look.faces[index].checked_sub(1) else { continue };
-            let beside =
-                [index - BORDER_PX, index + BORDER_PX, index - BORDER_PX * width, index + BORDER_PX * width];
-            let ray = picture.camera.unproject(DVec2::new(x as f64, y as f64));
-            let point_camera_mm = ray * (f64::from(look.view.image.depth_mm[index]) / ray.z);
-            let point_mm = object_from_camera.transform_point(point_camera_mm);
-            let Some((normal, albedo)) = model.shade_at(face as usize, point_mm) else { continue };
-            spots.push(Spot {
-                index,
-                point_camera_mm,
-                normal: pose.rotation * normal,
-                albedo,
-                is_inner: beside.iter().all(|&i| ids[i] == OBJECT_ID),
-            });
-        }
-    }
-    spots
-}
-
 /// The light that explains these pixels best, and the upper factor of the inverse covariance of what it leaves unexplained:
 /// times such a difference it has channels that are independent. `None` where the pixels are too uniform.
-fn fit_light(picture: &Picture, spots: &[&Spot]) -> Option<(Light, Matrix<3>)> {
+fn fit_light(picture: &Picture, spots: &[Spot]) -> Option<(Light, Matrix<3>)> {
     let mut weights = vec![1.0; spots.len()];
     let mut light = [[0.0; FEATURES]; 3];
     let mut differences = Vec::new();
@@ -202,7 +212,7 @@ fn fit_light(picture: &Picture, spots: &[&Spot]) -> Option<(Light, Matrix<3>)> {
 
 fn fit_channel(
     picture: &Picture,
-    spots: &[&Spot],
+    spots: &[Spot],
     weights: &[f64],
     channel: usize,
 ) -> Option<[f64; FEATURES]> {
@@ -224,15 +234,6 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// Of a difference in standard deviations, squared.
 fn biweight(squared: f64) -> f64 {
     (1.0 - squared / (GATE * GATE)).max(0.0).powi(2)
-}
-
-/// How the prediction changes from a pixel to the next, along x and y; `None` where a neighbour is not on the object.
-fn picture_slopes(picture: &Picture, predicted: &[Option<[f64; 3]>], spot: &Spot) -> Option<[[f64; 3]; 2]> {
-    let slope = |stride: usize| {
-        let (before, after) = (predicted[spot.index - stride]?, predicted[spot.index + stride]?);
-        Some(std::array::from_fn(|c| 0.5 * (after[c] - before[c])))
-    };
-    Some([slope(1)?, slope(picture.width)?])
 }
 
 /// Where the prediction makes a step, a pixel on the right side of it wants to stay and one on the wrong side is gated: the
@@ -293,7 +294,6 @@ mod tests {
             point_camera_mm: DVec3::Z,
             normal,
             albedo: Vec3::new(0.9, 0.5, 0.2),
-            is_inner: true,
         };
         let normal = DVec3::new(0.3, -0.5, -0.8);
         for (axis, step) in [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * 1e-4).into_iter().enumerate() {
