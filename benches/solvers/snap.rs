@@ -11,7 +11,7 @@ use pinpose::metrics::PoseError;
 use pinpose::scene::Symmetries;
 use pinpose::solve::TwistCovariance;
 use pinpose::solve::contour::ContourModel;
-use pinpose::solve::snap::{Snap, SnapHints, SnapOptions, SnapReach};
+use pinpose::solve::snap::{Snap, SnapHints, SnapOptions, SnapReach, score_of};
 
 use crate::chance::Chance;
 use crate::numbers::{cpu_secs, mean, percent, quantile};
@@ -102,9 +102,10 @@ fn snap_one(
     let photo = photo(chance, &camera(), &object.mesh, &truth);
     let start = disturbed(chance, &camera(), &truth, center, off);
     let options = SnapOptions { reach, ..SnapOptions::default() };
+    let hints = SnapHints::default();
+    let truth_score = score_of(&photo, &camera(), &object.model, &truth, &hints);
     let clock = cpu_secs();
-    let outcome =
-        Snap::with(&photo, &camera(), object.model.clone(), &start, SnapHints::default(), &options).run();
+    let outcome = Snap::with(&photo, &camera(), object.model.clone(), &start, hints, &options).run();
     let ms = (cpu_secs() - clock) * 1e3;
     let error = |pose| PoseError::between(pose, &truth, &object.mesh, &Symmetries::default(), 5000);
     let found = outcome.camera_from_object;
@@ -114,6 +115,7 @@ fn snap_one(
         after: error(&found),
         depth_mm: found.transform_point(center).z - truth.transform_point(center).z,
         verdict: outcome.verdict,
+        score_above_truth: outcome.score_after - truth_score.map_or(0.0, |score| score.total()),
         ms,
     };
     let deviation = outcome.covariance.map(|covariance| deviations(&covariance, &found, &truth, center));

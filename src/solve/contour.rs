@@ -391,6 +391,34 @@ mod tests {
     }
 
     #[test]
+    fn of_ridges_side_by_side_the_outermost_is_the_outline() {
+        // A corrugated tube, seen along its axis: ridges of 60 mm at 700, 710 … mm, which are 0.7 px apart in the photo.
+        let (segments, rings) = (120_u32, 9_u32);
+        let point = |ring: u32, k: u32| {
+            let (sin, cos) = (std::f32::consts::TAU * k as f32 / segments as f32).sin_cos();
+            let radius = if ring.is_multiple_of(2) { 60.0 } else { 59.0 };
+            glam::Vec3::new(radius * cos, radius * sin, 5.0 * ring as f32)
+        };
+        let positions_mm = (0..rings).flat_map(|ring| (0..segments).map(move |k| point(ring, k))).collect();
+        let quad = |ring: u32, k: u32| {
+            let [a, b] = [ring * segments + k, ring * segments + (k + 1) % segments];
+            [[a, b, b + segments], [a, b + segments, a + segments]]
+        };
+        let triangles =
+            (0..rings - 1).flat_map(|ring| (0..segments).flat_map(move |k| quad(ring, k))).collect();
+        let data = MeshData { positions_mm, triangles, ..MeshData::default() };
+        let points = outline(&Mesh::new(data).unwrap(), &Pose::from_translation(DVec3::Z * 700.0));
+        // A circumference of 2π · 49 px at 2 px.
+        assert!((130..180).contains(&points.len()), "{}", points.len());
+        let center = DVec2::new(camera().cx, camera().cy);
+        for point in points {
+            let inside_px = camera().fx * 60.0 / 700.0 - point.pixel.distance(center);
+            // A chord of 3° is 0.02 px off its circle; the next ridge is 0.7 px farther in.
+            assert!(inside_px.abs() < 0.3, "{inside_px}");
+        }
+    }
+
+    #[test]
     fn a_cylinders_outline_is_where_its_tangent_planes_are() {
         let (radius, half) = (40.0_f32, 60.0_f32);
         let segments = 200_u32;

@@ -42,7 +42,7 @@ impl Picture {
         largest_object_px: f64,
     ) -> Option<Self> {
         let size_px = object.size().max_element();
-        let margin = DVec2::splat(0.5 * size_px + 25.0);
+        let margin = DVec2::splat(0.3 * size_px + 20.0);
         let photo_rect = ImageRect::of_photo(photo.width, photo.height);
         let (min, max) =
             ((object.min - margin).max(photo_rect.min), (object.max + margin).min(photo_rect.max));

@@ -20,14 +20,14 @@ use crate::solve::motion::{motion_row, project_with_jacobian, turn_row};
 const BORDER_PX: usize = 3;
 const FEWEST_PIXELS: usize = 60;
 /// About as many pixels teach the light and pull.
-const PIXELS: usize = 400;
+const PIXELS: usize = 250;
 /// Differences larger than this many standard deviations count nothing (Tukey's biweight).
 const GATE: f64 = 3.0;
 /// Standard deviations below this are luck: a channel has steps of 1/255.
 const SMALLEST_SIGMA: f64 = 0.01;
 /// Slopes of the prediction that are steeper than this, in standard deviations a pixel, are steps.
 const STEEPEST: f64 = 2.0;
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 2;
 /// What each coefficient of the light is held to zero with, as a part of the pixels' weight.
 const RIDGE: f64 = 1e-3;
 

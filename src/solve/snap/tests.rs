@@ -85,8 +85,9 @@ fn a_clear_box_is_found_from_hand_placed_starts() {
         errors.push(corner_error_mm(&outcome.camera_from_object, &truth()));
     }
     errors.sort_by(f64::total_cmp);
-    // Starts are 8 to 20 mm off. The prior of the start holds back a part of what is left.
-    assert!(errors[6] < 4.0 && errors[10] < 8.0, "{errors:?}");
+    // Starts are 8 to 20 mm off. The photo mixes its colours otherwise than light does, which shifts a border by a fifth of a
+    // pixel: 0.3 mm. (Turns were once held back by sides of one colour, and ends were up to 12 mm off.)
+    assert!(errors[6] < 0.6 && errors[11] < 1.0, "{errors:?}");
 }
 
 #[test]
@@ -170,6 +171,24 @@ fn a_straight_border_is_found_by_its_edge() {
         }
         let score = score::score(&picture, &view, &colors, &points);
         assert_eq!(score.regions > 0.75 && score.edges > 0.5, is_better, "{score:?}");
+    }
+}
+
+#[test]
+fn the_border_of_a_mask_is_followed() {
+    let (picture, _, points) = two_halves(56);
+    assert!(edges::follow_mask(&picture, &points, 20.0).is_empty());
+    let photo = Pixels { width: 120, height: 100, rgba: vec![90; 4 * 120 * 100] };
+    let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
+    for (column, found) in [(60, Some(4.0)), (50, Some(-6.0)), (90, None)] {
+        let pixels = (0..100).flat_map(|_| (0..120).map(|x| x < column));
+        let mask = Mask::from_pixels(120, 100, pixels);
+        let rect = ImageRect::of_photo(photo.width, photo.height);
+        let picture = Picture::new(&photo, &camera, &rect, Some(&mask), LARGEST_OBJECT_PX).unwrap();
+        let pulls = edges::follow_mask(&picture, &points, 20.0);
+        assert_eq!(pulls.len(), if found.is_some() { points.len() } else { 0 });
+        // It is looked at in steps of half a pixel.
+        assert!(pulls.iter().all(|pull| (pull.offset_px - found.unwrap_or(0.0)).abs() <= 0.25 + 1e-9));
     }
 }
 
