@@ -1,8 +1,8 @@
 //! Where a start may really belong, before anything is refined.
 //!
-//! Refinements from many starts end in the same few places: colours that were learnt beside the object keep the pose there.
-//! So the outlines of a few views are first shifted, turned and scaled over a small copy of the picture, without drawing
-//! anything anew, and each place is rated by the edges under it and by how different the colours on its two sides are.
+//! A refinement goes to whatever is near. So the outlines of a few views are first shifted, turned and scaled over a small
+//! copy of the picture, without drawing anything anew, and each place is rated by the edges under it and by how different
+//! the colours on its two sides are.
 
 use glam::{DVec2, DVec3};
 
