@@ -61,15 +61,12 @@ pub fn renderer() -> Option<Renderer> {
 /// Python with NumPy.
 pub struct Python(String);
 
-/// The Python that `PINPOSE_PYTHON` names, or the system's; it has to have NumPy.
 pub fn numpy() -> Option<Python> {
-    let program = std::env::var("PINPOSE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let found = Program::new(&program).args(["-c", "import numpy"]).output();
-    if found.is_ok_and(|output| output.status.success()) {
-        return Some(Python(program));
+    let found = pinpose_web::python::with_numpy();
+    if found.is_none() {
+        missing("Python with NumPy");
     }
-    missing("Python with NumPy");
-    None
+    found.map(Python)
 }
 
 impl Python {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Context as _, bail, ensure};
 
 use crate::build::{self, Profile};
-use crate::chromium;
+use crate::{chromium, python};
 
 /// What the checks need of the system: a browser, a software graphics driver, and NumPy, which results are held against.
 const PACKAGES: [&str; 4] = ["chromium", "mesa-vulkan-drivers", "libvulkan1", "python3-numpy"];
@@ -88,7 +88,7 @@ fn run_command(command: &mut Command) -> anyhow::Result<()> {
 }
 
 fn install() -> anyhow::Result<()> {
-    if chromium::find().is_some() && chromium::has_software_vulkan() && has_numpy() {
+    if chromium::find().is_some() && chromium::has_software_vulkan() && python::with_numpy().is_some() {
         println!("All are there.");
         return Ok(());
     }
@@ -99,11 +99,6 @@ fn install() -> anyhow::Result<()> {
     }
     run_command(apt_get()?.arg("update"))?;
     run_command(apt_get()?.args(["install", "-y", "--no-install-recommends"]).args(PACKAGES))
-}
-
-fn has_numpy() -> bool {
-    let found = Command::new("python3").args(["-c", "import numpy"]).output();
-    found.is_ok_and(|output| output.status.success())
 }
 
 /// Through sudo, unless this is root already.

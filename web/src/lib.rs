@@ -10,6 +10,7 @@
 pub mod build;
 pub mod checks;
 pub mod chromium;
+pub mod python;
 pub mod server;
 
 use std::path::PathBuf;
