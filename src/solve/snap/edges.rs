@@ -63,6 +63,9 @@ fn fitness(picture: &Picture, colors: &ColorModel, point: &ContourPoint, offset_
 /// Where the mask's border is across each point of the outline: the nearest one within `reach_px` with the mask on the object's
 /// side. Nothing without a mask.
 pub fn follow_mask(picture: &Picture, points: &[ContourPoint], reach_px: f64) -> Vec<Pull> {
+    if picture.masked(0).is_none() {
+        return Vec::new();
+    }
     let outline = points.iter().filter(|point| point.kind == EdgeKind::Outline);
     outline.filter_map(|point| mask_border(picture, point, reach_px)).collect()
 }
