@@ -9,6 +9,7 @@ mod least_squares;
 mod linear;
 mod motion;
 pub mod pins;
+mod robust;
 mod shading;
 pub mod snap;
 pub mod symmetry;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::linear::{Matrix, congruent, solve};
-use crate::math::{Intrinsics, NEAR_MM, Pose, rotation_from_rotation_vector};
+use crate::math::{Intrinsics, NEAR_MM, Pose, rotation_from_rotation_vector, rotation_vector_from_rotation};
 
 /// Turns the pose by the rotation vector in `step[..3]` about `pivot_camera_mm` and shifts it by `step[3..]`, all in camera
 /// axes. A pivot within the object, unlike the camera's centre, keeps turning and shifting apart.
@@ -11,6 +11,14 @@ pub fn moved_about(pose: &Pose, pivot_camera_mm: DVec3, step: &[f64; 6]) -> Pose
     let [rx, ry, rz, x, y, z] = *step;
     let turn = Pose::rotation_about(pivot_camera_mm, rotation_from_rotation_vector(DVec3::new(rx, ry, rz)));
     (turn * *pose).translated(DVec3::new(x, y, z)).renormalized()
+}
+
+/// The turn about a point of the object, and the shift of that point, that lead from one pose to another, in camera axes: the
+/// step that [`moved_about`] takes with the point in the first pose as its pivot.
+pub fn step_between(from: &Pose, to: &Pose, point_mm: DVec3) -> [f64; 6] {
+    let turn = rotation_vector_from_rotation(&(to.rotation * from.rotation.transpose()));
+    let shift = to.transform_point(point_mm) - from.transform_point(point_mm);
+    [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z]
 }
 
 /// The pixel of a point and its derivative by the point, one row per pixel axis. `None` for a point that is not before the
@@ -126,6 +134,18 @@ mod tests {
         }
         assert!(project_with_jacobian(&camera(), DVec3::new(0.0, 0.0, -5.0)).is_none());
         assert!(project_with_jacobian(&camera(), DVec3::NAN).is_none());
+    }
+
+    #[test]
+    fn a_step_leads_from_one_pose_to_the_other() {
+        let from = Pose::exp(DVec3::new(0.4, -0.8, 0.3), DVec3::new(60.0, -40.0, 700.0));
+        let to = Pose::exp(DVec3::new(0.3, -0.7, 0.5), DVec3::new(50.0, -45.0, 720.0));
+        let point_mm = DVec3::new(30.0, -20.0, 50.0);
+        let step = step_between(&from, &to, point_mm);
+        let moved = moved_about(&from, from.transform_point(point_mm), &step);
+        // Numbers of a thousand, of 16 digits.
+        assert!(moved.angle_to(&to) < 1e-9 && moved.translation_mm.distance(to.translation_mm) < 1e-9);
+        assert_eq!(step_between(&from, &from, point_mm)[3..], [0.0; 3]);
     }
 
     #[test]

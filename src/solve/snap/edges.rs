@@ -1,7 +1,7 @@
 //! Edges in the picture near the contour's points: the clearest one, and for an outline against a clear background the
 //! exact place of its middle.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::colors::ColorModel;
 use super::picture::Picture;
@@ -40,7 +40,7 @@ fn search_line(picture: &Picture, colors: &ColorModel, point: &ContourPoint, rea
                 EdgeKind::Inner | EdgeKind::Crease => 1.5,
             };
             let variance_px = (kind_sigma_px * 0.8 / here).powi(2);
-            best = Some((liking, Pull { point: *point, offset_px, variance_px }));
+            best = Some((liking, Pull { point: *point, offset_px, variance_px, tone_px: 0.0 }));
         }
     }
     best.map(|(_, pull)| pull)
@@ -79,7 +79,12 @@ fn mask_border(picture: &Picture, point: &ContourPoint, reach_px: f64) -> Option
         .map(|half| 0.5 * f64::from(half) + 0.25)
         .filter(|border| is_object(border - 0.25) == Some(true) && is_object(border + 0.25) == Some(false));
     let nearest = borders.min_by(|a, b| a.abs().total_cmp(&b.abs()));
-    nearest.map(|offset_px| Pull { point: *point, offset_px, variance_px: MASK_SIGMA_PX * MASK_SIGMA_PX })
+    nearest.map(|offset_px| Pull {
+        point: *point,
+        offset_px,
+        variance_px: MASK_SIGMA_PX * MASK_SIGMA_PX,
+        tone_px: 0.0,
+    })
 }
 
 /// Masks have whole pixels, and are drawn by hands.
@@ -96,6 +101,9 @@ const WORST_END: f64 = 0.3;
 /// What is left in pixels where all is clear.
 const COVERAGE_SIGMA_PX: f64 = 0.1;
 
+/// What cameras do is between sRGB and no curve at all, and nearer to sRGB.
+pub(super) const USUAL_TONE: f64 = 0.2;
+
 /// The exact place of the outline on each line where the picture shows one clear step: a pixel that the object covers by a
 /// part has that part of its light, so the sum over a line says where the object ends, whatever the blur.
 ///
@@ -106,44 +114,68 @@ pub fn measure_coverage(picture: &Picture, points: &[ContourPoint], reach_px: us
 }
 
 fn measure_line(picture: &Picture, point: &ContourPoint, reach_px: usize) -> Option<Pull> {
-    let steps_per_px = COVERAGE_STEPS_PER_PX as f64;
-    let end = (reach_px * COVERAGE_STEPS_PER_PX) as i32;
-    let light: Option<Vec<DVec3>> = (-end..=end)
-        .map(|k| {
-            picture
-                .light(point.pixel + point.normal * (f64::from(k) / steps_per_px))
-                .map(|light| DVec3::from_array(light.map(f64::from)))
-        })
-        .collect();
-    let light = light?;
-    // Half of either side, with the sample at its border.
-    let outer = reach_px * COVERAGE_STEPS_PER_PX / 2;
-    let [inside_part, outside_part] = [light.get(..=outer)?, light.get(light.len() - 1 - outer..)?];
-    let (inside, inside_spread) = mean_and_spread(inside_part);
-    let (outside, outside_spread) = mean_and_spread(outside_part);
-    let step = inside - outside;
-    let contrast = step.length();
-    if contrast < SMALLEST_CONTRAST {
-        return None;
+    let in_light = Step::on_line(|place| picture.light(place), point, reach_px)?;
+    let in_code = Step::on_line(|place| picture.coded(place), point, reach_px)?;
+    let tone_px = in_code.offset_px - in_light.offset_px;
+    let sigma_px = COVERAGE_SIGMA_PX + 0.5 * (in_light.unclear + in_code.unclear);
+    Some(Pull {
+        point: *point,
+        offset_px: in_light.offset_px + USUAL_TONE * tone_px,
+        variance_px: sigma_px * sigma_px,
+        tone_px,
+    })
+}
+
+/// The one clear step on a line.
+struct Step {
+    offset_px: f64,
+    /// How far from that the line is, as a part of the step.
+    unclear: f64,
+}
+
+impl Step {
+    fn on_line(
+        color_at: impl Fn(DVec2) -> Option<[f32; 3]>,
+        point: &ContourPoint,
+        reach_px: usize,
+    ) -> Option<Self> {
+        let steps_per_px = COVERAGE_STEPS_PER_PX as f64;
+        let end = (reach_px * COVERAGE_STEPS_PER_PX) as i32;
+        let colors: Option<Vec<DVec3>> = (-end..=end)
+            .map(|k| {
+                color_at(point.pixel + point.normal * (f64::from(k) / steps_per_px))
+                    .map(|color| DVec3::from_array(color.map(f64::from)))
+            })
+            .collect();
+        let colors = colors?;
+        // Half of either side, with the sample at its border.
+        let outer = reach_px * COVERAGE_STEPS_PER_PX / 2;
+        let [inside_part, outside_part] = [colors.get(..=outer)?, colors.get(colors.len() - 1 - outer..)?];
+        let (inside, inside_spread) = mean_and_spread(inside_part);
+        let (outside, outside_spread) = mean_and_spread(outside_part);
+        let step = inside - outside;
+        let contrast = step.length();
+        if contrast < SMALLEST_CONTRAST {
+            return None;
+        }
+        let noise = (0.5 * (inside_spread + outside_spread)).sqrt() / contrast;
+        let middle = colors.get(outer..colors.len() - outer)?;
+        let half_px = (middle.len() - 1) as f64 / (2.0 * steps_per_px);
+        let coverage = |color: &DVec3| (*color - outside).dot(step) / step.length_squared();
+        let [first, .., last] = middle else { return None };
+        // The trapezium rule from one end to the other: as if the object covered all up to there and nothing beyond.
+        let inner = middle.iter().map(coverage).sum::<f64>() - 0.5 * (coverage(first) + coverage(last));
+        let offset_px = inner / steps_per_px - half_px;
+        // A step blurred over some two pixels, as lenses do it.
+        let ideal = |x: f64| 0.5 - 0.5 * (1.2 * (x - offset_px)).tanh();
+        let misfit = middle.iter().enumerate().map(|(k, color)| {
+            let expected = outside + step * ideal(k as f64 / steps_per_px - half_px);
+            color.distance_squared(expected) / step.length_squared()
+        });
+        let fit = (misfit.sum::<f64>() / middle.len() as f64).sqrt();
+        let is_clear = fit < WORST_FIT && noise < WORST_END && offset_px.abs() < 0.7 * half_px;
+        is_clear.then_some(Self { offset_px, unclear: fit + noise })
     }
-    let noise = (0.5 * (inside_spread + outside_spread)).sqrt() / contrast;
-    let middle = light.get(outer..light.len() - outer)?;
-    let half_px = (middle.len() - 1) as f64 / (2.0 * steps_per_px);
-    let coverage = |light: &DVec3| (*light - outside).dot(step) / step.length_squared();
-    let [first, .., last] = middle else { return None };
-    // The trapezium rule from one end to the other: as if the object covered all up to there and nothing beyond.
-    let inner = middle.iter().map(coverage).sum::<f64>() - 0.5 * (coverage(first) + coverage(last));
-    let offset_px = inner / steps_per_px - half_px;
-    // A step blurred over some two pixels, as lenses do it.
-    let ideal = |x: f64| 0.5 - 0.5 * (1.2 * (x - offset_px)).tanh();
-    let misfit = middle.iter().enumerate().map(|(k, light)| {
-        let expected = outside + step * ideal(k as f64 / steps_per_px - half_px);
-        light.distance_squared(expected) / step.length_squared()
-    });
-    let fit = (misfit.sum::<f64>() / middle.len() as f64).sqrt();
-    let is_clear = fit < WORST_FIT && noise < WORST_END && offset_px.abs() < 0.7 * half_px;
-    let variance_px = (COVERAGE_SIGMA_PX + fit + noise).powi(2);
-    is_clear.then_some(Pull { point: *point, offset_px, variance_px })
 }
 
 /// The mean of colours and their mean squared distance from it.

@@ -16,6 +16,8 @@ pub struct Picture {
     pub height: usize,
     /// Linear light, 0 to 1, row by row.
     light: Vec<[f32; 3]>,
+    /// The photo's own values, 0 to 1: in sRGB, as far as the camera kept to that.
+    coded: Vec<[f32; 3]>,
     /// Colours in sRGB, 0 to 1, blurred against noise.
     smoothed: Vec<[f32; 3]>,
     /// The same, as numbers of a few colours.
@@ -89,6 +91,7 @@ impl Picture {
             smoothed: smoothed(&colors, width, height),
             mask: None,
             light,
+            coded: colors,
             origin: cut.1,
             photo_px,
         };
@@ -167,6 +170,11 @@ impl Picture {
     /// Linear light between four pixels; `None` outside of their centres.
     pub fn light(&self, pixel: DVec2) -> Option<[f32; 3]> {
         self.between(&self.light, pixel)
+    }
+
+    /// The photo's own values between four pixels; `None` outside of their centres.
+    pub fn coded(&self, pixel: DVec2) -> Option<[f32; 3]> {
+        self.between(&self.coded, pixel)
     }
 
     fn between<const N: usize>(&self, values: &[[f32; N]], pixel: DVec2) -> Option<[f32; N]> {

@@ -1,16 +1,19 @@
-//! What is known before the picture is looked at: the start, and pins.
+//! What is known before the picture is looked at: the start, pins, and how far off outlines are together.
 
 use glam::DVec3;
 
 use super::SnapReach;
+use super::measurements::{Equations, Shared, row_of};
 use super::picture::Picture;
-use crate::math::{Pose, rotation_vector_from_rotation};
-use crate::solve::least_squares::NormalEquations;
-use crate::solve::motion::{motion_row, project_with_jacobian};
+use crate::math::Pose;
+use crate::solve::motion::{motion_row, project_with_jacobian, step_between};
 use crate::solve::pins::Pin;
 
 /// Noise of a click: what a pin pulls with.
 const PIN_SIGMA_PX: f64 = 2.0;
+/// How far cameras' curves are from the usual one, and outlines from where meshes have them: one standard deviation.
+const SHARED_SIGMA: Shared = Shared { tone: 2.0, growth_px: 0.15 };
+
 #[derive(Debug, Clone)]
 pub struct Prior {
     /// From the `object` frame to the `camera` frame.
@@ -40,7 +43,7 @@ impl Prior {
     /// Adds what pins want of a pose, for small motions of it about `pivot`, in camera axes.
     pub fn add_pins(
         &self,
-        equations: &mut NormalEquations<6>,
+        equations: &mut Equations,
         picture: &Picture,
         (pose, pivot_camera_mm): (&Pose, DVec3),
     ) {
@@ -50,31 +53,34 @@ impl Prior {
             let weight = pin.weight * (picture.photo_px / PIN_SIGMA_PX).powi(2);
             let residual = pixel - picture.place_of(pin.pixel);
             for (gradient, residual) in jacobian.into_iter().zip(residual.to_array()) {
-                equations.add(&motion_row(seen - pivot_camera_mm, gradient), residual, weight);
+                let row = row_of(&motion_row(seen - pivot_camera_mm, gradient), Shared::default());
+                equations.add(&row, residual, weight);
             }
         }
     }
 
+    /// What is shared is as usual, unless the picture says otherwise.
+    pub fn add_shared(equations: &mut Equations) {
+        let Shared { tone, growth_px } = SHARED_SIGMA;
+        for (axis, sigma) in
+            [(Shared { tone: 1.0, growth_px: 0.0 }, tone), (Shared { tone: 0.0, growth_px: 1.0 }, growth_px)]
+        {
+            equations.add(&row_of(&[0.0; 6], axis), 0.0, 1.0 / (sigma * sigma));
+        }
+    }
+
     /// The start is where somebody put the object on purpose: what the picture says nothing of stays as it was.
-    pub fn add_start(
-        &self,
-        equations: &mut NormalEquations<6>,
-        picture: &Picture,
-        pose: &Pose,
-        center_mm: DVec3,
-    ) {
-        let [from, to] = [&self.start, pose].map(|pose| pose.transform_point(center_mm));
-        let turned = rotation_vector_from_rotation(&(pose.rotation * self.start.rotation.transpose()));
+    pub fn add_start(&self, equations: &mut Equations, picture: &Picture, pose: &Pose, center_mm: DVec3) {
         let Spread { turn_rad, depth, shift_px } = self.spread();
-        let lateral_mm = shift_px * from.z / (picture.camera.focal_px() * picture.photo_px);
-        let depth_mm = depth * from.z;
-        let shift = to - from;
+        let distance_mm = self.start.transform_point(center_mm).z;
+        let lateral_mm = shift_px * distance_mm / (picture.camera.focal_px() * picture.photo_px);
+        let depth_mm = depth * distance_mm;
         let sigmas = [turn_rad, turn_rad, turn_rad, lateral_mm, lateral_mm, depth_mm];
-        let residuals = [turned.x, turned.y, turned.z, shift.x, shift.y, shift.z];
+        let residuals = step_between(&self.start, pose, center_mm);
         for (i, (residual, sigma)) in residuals.into_iter().zip(sigmas).enumerate() {
             let mut row = [0.0; 6];
             row[i] = 1.0;
-            equations.add(&row, residual, 1.0 / (sigma * sigma));
+            equations.add(&row_of(&row, Shared::default()), residual, 1.0 / (sigma * sigma));
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-use super::measurements::Measurement;
+use super::measurements::{Measurement, Shared, row_of};
 use super::picture::Picture;
 use crate::math::Pose;
 use crate::solve::contour::{ContourPoint, EdgeKind};
 use crate::solve::motion::{motion_row, project_with_jacobian};
+use crate::solve::robust::biweight;
 
 /// A point of the contour belongs elsewhere on the line across it.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +16,8 @@ pub struct Pull {
     /// How far, counted along the point's normal, in pixels.
     pub offset_px: f64,
     pub variance_px: f64,
+    /// How much larger the offset would be at a [tone](Shared::tone) of 1 instead of 0.
+    pub tone_px: f64,
 }
 
 /// What pulls say of small motions of `pose` about `pivot_camera_mm`. One of `gate_px` or more is of something else (Tukey's
@@ -31,11 +34,12 @@ pub fn measurements(
         let normal = pull.point.normal;
         let sigma_px = pull.variance_px.sqrt();
         let row = motion_row(seen - pivot_camera_mm, by_x * normal.x + by_y * normal.y);
+        let is_outline = pull.point.kind == EdgeKind::Outline;
+        let shared = Shared { tone: -pull.tone_px, growth_px: if is_outline { -1.0 } else { 0.0 } };
         Some(Measurement {
             residual: -pull.offset_px / sigma_px,
-            row: row.map(|value| value / sigma_px),
-            trust: (1.0 - (pull.offset_px / gate_px).powi(2)).max(0.0).powi(2),
-            is_outline: pull.point.kind == EdgeKind::Outline,
+            row: row_of(&row, shared).map(|value| value / sigma_px),
+            trust: biweight((pull.offset_px / gate_px).powi(2)),
         })
     };
     pulls.iter().filter_map(measurement).collect()

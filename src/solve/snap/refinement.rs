@@ -5,16 +5,16 @@ use glam::DVec3;
 use super::SnapReach;
 use super::colors::ColorModel;
 use super::look::{Density, Look, is_before_camera};
-use super::measurements::Kind;
+use super::measurements::{Equations, Kind, motion_in};
 use super::prior::Prior;
 use super::pull::{self, Pull};
 use super::sight::Sight;
 use super::{edges, surface};
 use crate::math::Pose;
 use crate::solve::contour::ContourModel;
-use crate::solve::least_squares::NormalEquations;
 use crate::solve::linear::solve;
 use crate::solve::motion::moved_about;
+use crate::solve::robust::median;
 
 /// What part of an independent measurement each is, see [`Kind`]: set on made photos (another seed than the benchmark's) and
 /// on the tuning half of its real ones.
@@ -59,10 +59,8 @@ pub struct Scene<'a> {
 /// What the picture and the pins say, without the start; for small motions about the pivot.
 #[derive(Debug, Clone)]
 pub struct Evidence {
-    pub equations: NormalEquations<6>,
+    pub equations: Equations,
     pub pivot_camera_mm: DVec3,
-    /// The gradient that an outline seen one standard deviation farther out would add.
-    pub outward: [f64; 6],
 }
 
 /// The way from one place.
@@ -112,12 +110,13 @@ impl Refinement {
         let pivot_camera_mm = self.pose.transform_point(center_mm);
         let Some(mut kinds) = self.look_around(scene, &look, pivot_camera_mm) else { return false };
         let equations = |kinds: &[Kind]| {
-            let mut equations = NormalEquations::ZERO;
+            let mut equations = Equations::ZERO;
             kinds.iter().for_each(|kind| kind.add_to(&mut equations));
+            Prior::add_shared(&mut equations);
             scene.prior.add_pins(&mut equations, picture, (&self.pose, pivot_camera_mm));
             equations
         };
-        let step_of = |mut equations: NormalEquations<6>| {
+        let step_of = |mut equations: Equations| {
             scene.prior.add_start(&mut equations, picture, &self.pose, center_mm);
             solve(&equations.h, &equations.g.map(|g| -g))
         };
@@ -126,13 +125,14 @@ impl Refinement {
         kinds.iter_mut().for_each(|kind| kind.doubt_what_is_left(&first));
         let equations = equations(&kinds);
         let Some(step) = step_of(equations.clone()) else { return false };
-        let moved = moved_about(&self.pose, pivot_camera_mm, &step);
+        let motion = motion_in(&step);
+        let moved = moved_about(&self.pose, pivot_camera_mm, &motion);
         if !is_before_camera(&moved, scene.model) {
             return false;
         }
         self.pose = moved;
-        self.evidence = Some(Evidence { equations, pivot_camera_mm, outward: outward(&kinds) });
-        look.motion_px(&step, pivot_camera_mm.z, picture) > SMALLEST_STEP_PX || self.step < FIRST_STEPS
+        self.evidence = Some(Evidence { equations, pivot_camera_mm });
+        look.motion_px(&motion, pivot_camera_mm.z, picture) > SMALLEST_STEP_PX || self.step < FIRST_STEPS
     }
 
     /// All that the picture says of the present pose; `None` where colours cannot be told apart.
@@ -167,24 +167,8 @@ impl Refinement {
     }
 }
 
-fn outward(kinds: &[Kind]) -> [f64; 6] {
-    let mut gradient = [0.0; 6];
-    for kind in kinds {
-        for measurement in kind.measurements.iter().filter(|measurement| measurement.is_outline) {
-            let weight = kind.share * measurement.trust;
-            gradient.iter_mut().zip(measurement.row).for_each(|(sum, value)| *sum += weight * value);
-        }
-    }
-    gradient
-}
-
 /// A few times what is usual among the measurements: near the end half a pixel more than that is another edge.
 fn coverage_gate_px(found: &[Pull]) -> f64 {
-    let mut offsets: Vec<f64> = found.iter().map(|pull| pull.offset_px.abs()).collect();
-    let middle = offsets.len() / 2;
-    if offsets.is_empty() {
-        return 2.0;
-    }
-    let median = *offsets.select_nth_unstable_by(middle, f64::total_cmp).1;
-    (5.0 * median).clamp(0.3, 2.0)
+    let usual_px = median(found.iter().map(|pull| pull.offset_px.abs()).collect());
+    (5.0 * usual_px).clamp(0.3, 2.0)
 }

@@ -8,13 +8,14 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::look::Look;
-use super::measurements::Measurement;
+use super::measurements::{Measurement, Shared, row_of};
 use super::picture::Picture;
 use crate::math::Pose;
 use crate::solve::contour::{ContourModel, OBJECT_ID};
 use crate::solve::least_squares::NormalEquations;
 use crate::solve::linear::{Matrix, cholesky, inverse, solve};
 use crate::solve::motion::{motion_row, project_with_jacobian, turn_row};
+use crate::solve::robust::{biweight, median};
 
 /// Nearer than this to what is not the object, a pixel may show something else.
 const BORDER_PX: usize = 3;
@@ -192,7 +193,7 @@ fn fit_light(picture: &Picture, spots: &[Spot]) -> Option<(Light, Matrix<3>)> {
         });
         for (weight, difference) in weights.iter_mut().zip(&differences) {
             let squared: f64 = difference.iter().zip(sigmas).map(|(d, sigma)| (d / sigma).powi(2)).sum();
-            *weight = biweight(squared / 3.0);
+            *weight = biweight(squared / (3.0 * GATE * GATE));
         }
     }
     let total: f64 = weights.iter().sum();
@@ -224,16 +225,6 @@ fn fit_channel(
     let ridge = RIDGE * weights.iter().sum::<f64>();
     (0..FEATURES).for_each(|i| equations.h[i][i] += ridge);
     solve(&equations.h, &equations.g.map(|g| -g))
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
-}
-
-/// Of a difference in standard deviations, squared.
-fn biweight(squared: f64) -> f64 {
-    (1.0 - squared / (GATE * GATE)).max(0.0).powi(2)
 }
 
 /// Where the prediction makes a step, a pixel on the right side of it wants to stay and one on the wrong side is gated: the
@@ -274,10 +265,12 @@ fn pixel_measurements(
     let residuals = whitening.map(|weights| mix(&weights, *difference));
     let squared: f64 = residuals.iter().map(|residual| residual * residual).sum();
     std::array::from_fn(|c| Measurement {
-        row: std::array::from_fn(|k| mix(&whitening[c], [rows[0][k], rows[1][k], rows[2][k]])),
+        row: row_of(
+            &std::array::from_fn(|k| mix(&whitening[c], [rows[0][k], rows[1][k], rows[2][k]])),
+            Shared::default(),
+        ),
         residual: residuals[c],
-        trust: biweight(squared / 3.0),
-        is_outline: false,
+        trust: biweight(squared / (3.0 * GATE * GATE)),
     })
 }
 

@@ -174,6 +174,41 @@ fn a_straight_border_is_found_by_its_edge() {
     }
 }
 
+/// A dark half before a bright one with the border at column 60.3, blurred over two pixels: as light, or as the photo's values.
+fn blurred_halves(as_light: bool) -> Pixels {
+    let [dark, bright] = [0.15_f64, 0.9];
+    let [to_light, to_code] = if as_light { [2.2, 1.0 / 2.2] } else { [1.0, 1.0] };
+    let value = |x: u32| {
+        // How much of the two pixels about this one is on the dark side.
+        let covered = ((60.3 - (f64::from(x) - 1.0)) / 2.0).clamp(0.0, 1.0);
+        (dark.powf(to_light) * covered + bright.powf(to_light) * (1.0 - covered)).powf(to_code)
+    };
+    let gray = |x: u32| [(255.0 * value(x)).round() as u8; 3];
+    let rgba = (0..100).flat_map(|_| (0..120).flat_map(|x| [gray(x).as_slice(), &[255]].concat())).collect();
+    Pixels { width: 120, height: 100, rgba }
+}
+
+#[test]
+fn the_tone_says_where_the_outline_is_by_either_curve() {
+    // Points at 59.5.
+    let (_, _, points) = two_halves(60);
+    for (as_light, tone) in [(true, 0.0), (false, 1.0)] {
+        let photo = blurred_halves(as_light);
+        let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
+        let rect = ImageRect::of_photo(photo.width, photo.height);
+        let picture = Picture::new(&photo, &camera, &rect, None, LARGEST_OBJECT_PX).unwrap();
+        let pulls = edges::measure_coverage(&picture, &points, 4);
+        assert!(pulls.len() > points.len() / 2, "{}", pulls.len());
+        for pull in pulls {
+            let offset_px = pull.offset_px + (tone - edges::USUAL_TONE) * pull.tone_px;
+            // Samples between pixels are on chords of the curve, and the power is not quite sRGB's.
+            assert!((offset_px - 0.8).abs() < 0.05, "{as_light} {offset_px} {}", pull.tone_px);
+            // Little dark makes a pixel's light much less, and its value less so: it matters here.
+            assert!(pull.tone_px < -0.15, "{}", pull.tone_px);
+        }
+    }
+}
+
 #[test]
 fn the_border_of_a_mask_is_followed() {
     let (picture, _, points) = two_halves(56);

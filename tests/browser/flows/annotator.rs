@@ -2,6 +2,8 @@
 //!
 //! Its clicks are where the truth has the points, off by as much as a careful hand; they are not people's.
 
+use std::time::Instant;
+
 use anyhow::{Context as _, ensure};
 
 use super::expert::{Expert, Shape};
@@ -65,13 +67,15 @@ pub fn pins_and_snap(context: &mut Context) -> anyhow::Result<()> {
     for (number, sample) in linemod.samples.iter().enumerate() {
         let hand = Hand { sigma_px: 2.0, state: number as u64 };
         let outcome = pose(page, &linemod, sample, hand).with_context(|| sample.mesh.clone())?;
+        let clock = Instant::now();
         page.key(" ", &[])?;
         page.wait_for_state("!state.busy", PATIENCE)?;
+        let snap_ms = clock.elapsed().as_millis();
         let snapped = page.selected_pose()?;
         let vertices = Shape::of_ply(&linemod.file(&sample.mesh)?)?.vertices;
         let add_mm = add_mm(&snapped.camera_from_object, &sample.camera_from_object, &vertices);
         println!(
-            "   {}: ADD {:.1} mm with {PINS} pins, {add_mm:.1} mm after the snap ({}), {} gestures",
+            "   {}: ADD {:.1} mm with {PINS} pins, {add_mm:.1} mm after the snap ({}, {snap_ms} ms from key to end), {} gestures",
             sample.mesh,
             outcome.add_mm,
             if snapped.source == "snap" { "taken" } else { "refused" },
