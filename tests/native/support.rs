@@ -61,6 +61,7 @@ pub fn renderer() -> Option<Renderer> {
 /// Python with NumPy.
 pub struct Python(String);
 
+/// `None`, said aloud, where there is no Python with NumPy.
 pub fn numpy() -> Option<Python> {
     let found = pinpose_web::python::with_numpy();
     if found.is_none() {

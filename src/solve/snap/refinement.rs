@@ -44,8 +44,8 @@ pub const STEPS: u32 = 8;
 /// How many of the places that a search finds are rated, and how many of those are refined.
 pub fn kept(reach: SnapReach) -> [usize; 2] {
     match reach {
-        SnapReach::Near => [5, 2],
-        SnapReach::Wide => [9, 3],
+        SnapReach::Near => [3, 2],
+        SnapReach::Wide => [7, 3],
     }
 }
 
