@@ -2,8 +2,9 @@
 //!
 //! Where to begin is searched for in a small copy of the photo, and the best places that are found are refined. Edges pull
 //! (after Drummond and Cipolla, 2002); where the background is clear, the outline's exact place is measured; and the surface
-//! within the outline is compared with what it should look like. Pins pull in the same equations. It is a state machine:
-//! each step is short, so that no frame is late.
+//! within the outline is compared with what it should look like. What all of an outline has in common (the camera's curve, a
+//! halo) is solved for with the pose. Pins pull in the same equations. It is a state machine: each step is short, so that no
+//! frame is late.
 
 mod colors;
 mod edges;

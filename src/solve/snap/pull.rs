@@ -35,7 +35,7 @@ pub fn measurements(
         let sigma_px = pull.variance_px.sqrt();
         let row = motion_row(seen - pivot_camera_mm, by_x * normal.x + by_y * normal.y);
         let is_outline = pull.point.kind == EdgeKind::Outline;
-        let shared = Shared { tone: -pull.tone_px, growth_px: if is_outline { -1.0 } else { 0.0 } };
+        let shared = Shared { tone: -pull.tone_px, growth_px: if is_outline { 1.0 } else { 0.0 } };
         Some(Measurement {
             residual: -pull.offset_px / sigma_px,
             row: row_of(&row, shared).map(|value| value / sigma_px),
