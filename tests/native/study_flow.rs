@@ -125,13 +125,13 @@ impl Visit {
         self.click("Continue");
         assert_eq!(self.screen(), "instructions");
         self.click("Start practice");
-        assert_eq!(self.screen(), "practice");
+        self.wait("practice");
         self.work();
         assert_eq!(self.screen(), "feedback");
         self.click("Continue");
         assert_eq!(self.screen(), "begin");
         self.click("Start");
-        assert_eq!(self.screen(), "trial");
+        self.wait("trial");
     }
 
     fn refused(&mut self, call: PageCall) -> String {
@@ -170,7 +170,7 @@ fn a_participant_goes_through_the_example_with_a_reload_in_a_trial() {
     let mut visit = Visit::start(&storage, "flow");
     visit.go_to_first_trial();
     visit.work();
-    assert_eq!(visit.screen(), "trial");
+    visit.wait("trial");
     visit.move_object();
     visit.drag();
     let before = kept(&mut visit, &storage, |one| {
