@@ -134,15 +134,20 @@ fn slices_and_one_go_end_alike_and_pins_pull() {
     assert!(error_mm < 1.5, "{error_mm}");
 }
 
+/// All of a photo, as if the object filled it.
+fn whole_picture(photo: &Pixels, mask: Option<&Mask>) -> Picture {
+    let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
+    let rect = ImageRect::of_photo(photo.width, photo.height);
+    Picture::new(photo, &camera, &rect, mask, LARGEST_OBJECT_PX).unwrap()
+}
+
 /// Red to the left of column 60, blue to the right; the object is taken to reach to column `to`.
 fn two_halves(to: usize) -> (Picture, DepthView, Vec<ContourPoint>) {
     let (width, height) = (120_usize, 100_usize);
     let columns = (0..height).flat_map(|_| 0..width);
     let rgba = columns.clone().flat_map(|x| if x < 60 { [200, 40, 40, 255] } else { [30, 60, 190, 255] });
     let photo = Pixels { width: width as u32, height: height as u32, rgba: rgba.collect() };
-    let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
-    let rect = ImageRect::of_photo(photo.width, photo.height);
-    let picture = Picture::new(&photo, &camera, &rect, None, LARGEST_OBJECT_PX).unwrap();
+    let picture = whole_picture(&photo, None);
     let ids = columns.map(|x| if x < to { OBJECT_ID } else { 0 }).collect();
     let image =
         RasterImage { width: photo.width, height: photo.height, depth_mm: vec![500.0; width * height], ids };
@@ -194,9 +199,7 @@ fn the_tone_says_where_the_outline_is_by_either_curve() {
     let (_, _, points) = two_halves(60);
     for (as_light, tone) in [(true, 0.0), (false, 1.0)] {
         let photo = blurred_halves(as_light);
-        let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
-        let rect = ImageRect::of_photo(photo.width, photo.height);
-        let picture = Picture::new(&photo, &camera, &rect, None, LARGEST_OBJECT_PX).unwrap();
+        let picture = whole_picture(&photo, None);
         let pulls = edges::measure_coverage(&picture, &points, 4);
         assert!(pulls.len() > points.len() / 2, "{}", pulls.len());
         for pull in pulls {
@@ -214,12 +217,10 @@ fn the_border_of_a_mask_is_followed() {
     let (picture, _, points) = two_halves(56);
     assert!(edges::follow_mask(&picture, &points, 20.0).is_empty());
     let photo = Pixels { width: 120, height: 100, rgba: vec![90; 4 * 120 * 100] };
-    let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
     for (column, found) in [(60, Some(4.0)), (50, Some(-6.0)), (90, None)] {
         let pixels = (0..100).flat_map(|_| (0..120).map(|x| x < column));
         let mask = Mask::from_pixels(120, 100, pixels);
-        let rect = ImageRect::of_photo(photo.width, photo.height);
-        let picture = Picture::new(&photo, &camera, &rect, Some(&mask), LARGEST_OBJECT_PX).unwrap();
+        let picture = whole_picture(&photo, Some(&mask));
         let pulls = edges::follow_mask(&picture, &points, 20.0);
         assert_eq!(pulls.len(), if found.is_some() { points.len() } else { 0 });
         // It is looked at in steps of half a pixel.
