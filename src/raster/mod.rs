@@ -16,6 +16,7 @@ use crate::mesh::Mesh;
 
 pub use mask::Mask;
 pub use silhouette::{MeasuredDepth, Silhouette, VISIBILITY_DELTA_MM, silhouettes};
+use triangle::ScreenVertex;
 
 /// A mesh to be drawn.
 #[derive(Debug, Clone, Copy)]
@@ -91,19 +92,16 @@ fn draw(
     id_of: impl Fn(u32) -> u32,
 ) {
     let projector = clip::Projector::new(camera, region);
-    let project = |position: &Vec3| {
-        let point_camera_mm = camera_from_object.transform_point(position.as_dvec3());
-        (point_camera_mm, projector.project(point_camera_mm))
-    };
-    let vertices: Vec<_> = mesh.positions_mm().iter().map(project).collect();
+    let in_camera_mm = |position: &Vec3| camera_from_object.transform_point(position.as_dvec3());
+    let positions_mm = mesh.positions_mm();
+    let projected: Vec<Option<ScreenVertex>> =
+        positions_mm.iter().map(|position| projector.project(in_camera_mm(position))).collect();
     for (number, triangle) in (0..).zip(mesh.triangles()) {
-        let corners = triangle.map(|vertex| vertices[vertex as usize]);
-        if let [(_, Some(a)), (_, Some(b)), (_, Some(c))] = corners {
+        if let [Some(a), Some(b), Some(c)] = triangle.map(|vertex| projected[vertex as usize]) {
             triangle::fill(image, [a, b, c], id_of(number));
         } else {
-            let [first, rest @ ..] = &projector.clip(corners.map(|(point, _)| point))[..] else {
-                continue;
-            };
+            let corners = triangle.map(|vertex| in_camera_mm(&positions_mm[vertex as usize]));
+            let [first, rest @ ..] = &projector.clip(corners)[..] else { continue };
             for pair in rest.windows(2) {
                 triangle::fill(image, [*first, pair[0], pair[1]], id_of(number));
             }

@@ -5,7 +5,8 @@
 
 use super::RasterImage;
 
-pub(super) const GRID_PER_PIXEL: i64 = 4096;
+pub(super) const GRID_PER_PIXEL: i64 = 1 << GRID_BITS;
+const GRID_BITS: u32 = 12;
 
 /// A corner on the grid, counted from the centre of the region's first pixel.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -45,14 +46,24 @@ impl Edge {
         self.at_origin + x * self.dx + y * self.dy
     }
 
-    /// Narrows the range of x that lies within this edge in row y.
+    /// Narrows the range of x that lies within this edge in row y, by halves: triangles of a mesh are a pixel or two wide, and
+    /// for those a division of whole numbers takes longer.
     fn narrow(&self, y: i64, first: &mut i64, last: &mut i64) {
-        let surplus = self.at(0, y) - self.smallest;
-        if self.dx > 0 {
-            *first = (*first).max(-surplus.div_euclid(self.dx));
-        } else if self.dx < 0 {
-            *last = (*last).min(surplus.div_euclid(-self.dx));
-        } else if surplus < 0 {
+        let at_row = self.at(0, y) - self.smallest;
+        let is_within = |x: i64| at_row + x * self.dx >= 0;
+        if self.dx > 0 && is_within(*last) {
+            let mut within = *last;
+            while *first < within {
+                let middle = (*first + within) >> 1;
+                if is_within(middle) { within = middle } else { *first = middle + 1 }
+            }
+        } else if self.dx < 0 && is_within(*first) {
+            let mut within = *first;
+            while within < *last {
+                let middle = (within + *last + 1) >> 1;
+                if is_within(middle) { within = middle } else { *last = middle - 1 }
+            }
+        } else if !is_within(*first) {
             *last = *first - 1;
         }
     }
@@ -115,7 +126,8 @@ fn doubled_area(a: &ScreenVertex, b: &ScreenVertex, c: &ScreenVertex) -> i64 {
 /// The first and last pixel whose centre lies between these grid coordinates, within 0..size.
 fn pixel_range(grid: [i32; 3], size: u32) -> [i64; 2] {
     let [a, b, c] = grid.map(i64::from);
-    let first = -(-a.min(b).min(c)).div_euclid(GRID_PER_PIXEL);
-    let last = a.max(b).max(c).div_euclid(GRID_PER_PIXEL);
+    // Shifts round down.
+    let first = (a.min(b).min(c) + GRID_PER_PIXEL - 1) >> GRID_BITS;
+    let last = a.max(b).max(c) >> GRID_BITS;
     [first.max(0), last.min(i64::from(size) - 1)]
 }

@@ -1,8 +1,10 @@
 //! The part of a photo that a snap looks at, at the size at which it looks.
 
+use std::borrow::Cow;
+
 use glam::DVec2;
 
-use super::palette::{COLORS, Palette};
+use super::palette::Palette;
 use crate::math::{ImageRect, Intrinsics};
 use crate::photo::{Pixels, half_size};
 use crate::raster::Mask;
@@ -159,12 +161,12 @@ impl Picture {
         (x * normal[0] + y * normal[1]).abs()
     }
 
-    /// The number of a pixel's colour in the palette; with a mask, whether the pixel is in it.
-    pub fn label(&self, index: usize) -> usize {
-        if let Some(is_object) = self.masked(index) {
-            return usize::from(is_object);
+    /// The number of each pixel's colour in the palette; with a mask, whether the pixel is in it.
+    pub fn labels(&self) -> Cow<'_, [u8]> {
+        match &self.mask {
+            Some(mask) => mask.iter().map(|&is_object| u8::from(is_object)).collect(),
+            None => Cow::Borrowed(&self.palette.labels),
         }
-        usize::from(self.palette.labels.get(index).copied().unwrap_or_default()) % COLORS
     }
 
     /// Linear light between four pixels; `None` outside of their centres.

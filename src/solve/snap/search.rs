@@ -33,6 +33,9 @@ const VIEWS_PER_RING: [usize; 2] = [4, 8];
 const SHIFT_WITH_PINS_PX: f64 = 4.0;
 /// Between tried places, in pixels of the small copy: an edge is two of them wide there.
 const STEP_PX: i32 = 2;
+/// At first every so many points of an outline are looked at, and then all, where one place in so many is left.
+const ROUGHLY: usize = 3;
+const PLACES_PER_PROMISING: usize = 16;
 /// Colours are looked at so far from the outline on either side, in pixels of the small copy.
 const BESIDE_PX: [f64; 3] = [1.5, 2.5, 4.0];
 /// Nearer than this to the picture's border a point is not looked at.
@@ -102,37 +105,67 @@ fn best_place(sight: &Sight, model: &ContourModel, prior: &Prior, turn: DVec3) -
     let middle = picture.camera.project(center)?;
     let view = Pose::rotation_about(center, rotation_from_rotation_vector(turn)) * prior.start;
     let look = Look::at(sight, model, &view, Density::Coarse);
-    let outline: Vec<&ContourPoint> =
+    let points: Vec<&ContourPoint> =
         look.points.iter().filter(|point| point.kind == EdgeKind::Outline).collect();
-    if outline.len() < FEWEST_POINTS {
+    if points.len() < FEWEST_POINTS {
         return None;
     }
+    let sides = [-1.0, 0.0, 1.0];
+    let outlines: Vec<Outline> = sides
+        .into_iter()
+        .flat_map(|roll| sides.map(|scale| (reach.roll_rad * roll, 1.0 + reach.depth * scale)))
+        .map(|(roll_rad, factor)| Outline::new(picture, &points, middle, roll_rad, factor))
+        .collect();
     let has_pins = prior.pins.iter().filter(|pin| pin.enabled).count() > 1;
     let shift_px = if has_pins { SHIFT_WITH_PINS_PX } else { reach.shift_px } / picture.photo_px;
+    let (rating, outline, [right, down]) = best_of(picture, &outlines, shift_px)?;
+    let pixel = middle + DVec2::new(f64::from(right), f64::from(down));
+    let place = picture.camera.unproject(pixel) * (center.z / outline.factor);
+    let rolled = rotation_from_rotation_vector(center.normalize_or(DVec3::Z) * outline.roll_rad);
+    Some((rating, (Pose::rotation_about(center, rolled) * view).translated(place - center)))
+}
+
+/// The best of these outlines, shifted by `shift_px` at most; with its rating and its shift in pixels.
+fn best_of<'a>(
+    picture: &Picture,
+    outlines: &'a [Outline],
+    shift_px: f64,
+) -> Option<(f32, &'a Outline, [i32; 2])> {
+    let labels = picture.labels();
     let shifts = (shift_px / f64::from(STEP_PX)).ceil() as i32;
-    let mut best: Option<(f32, Pose)> = None;
-    for (roll, scale) in
-        [-1.0, 0.0, 1.0].into_iter().flat_map(|roll| [-1.0, 0.0, 1.0].map(|scale| (roll, scale)))
-    {
-        let (roll_rad, factor) = (reach.roll_rad * roll, 1.0 + reach.depth * scale);
+    let shifts = || (-shifts..=shifts).map(|step| step * STEP_PX);
+    let places = shifts().flat_map(|down| shifts().map(move |right| [right, down]));
+    let mut rated: Vec<(f32, &Outline, [i32; 2])> = Vec::new();
+    for outline in outlines {
+        let rate = |shift| rate(picture, &labels, outline.probes.iter().step_by(ROUGHLY), shift);
+        rated.extend(places.clone().map(|shift| (rate(shift), outline, shift)));
+    }
+    // Most places are far worse than the best, and a part of the outline is enough to tell.
+    let promising = rated.len().div_ceil(PLACES_PER_PROMISING);
+    rated.select_nth_unstable_by(promising.checked_sub(1)?, |a, b| b.0.total_cmp(&a.0));
+    let rate = |outline: &Outline, shift| rate(picture, &labels, outline.probes.iter(), shift);
+    let promising = rated.into_iter().take(promising);
+    promising
+        .map(|(_, outline, shift)| (rate(outline, shift), outline, shift))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// A view's outline, turned and scaled about the object's middle.
+struct Outline {
+    roll_rad: f64,
+    factor: f64,
+    probes: Vec<Probe>,
+}
+
+impl Outline {
+    fn new(picture: &Picture, points: &[&ContourPoint], middle: DVec2, roll_rad: f64, factor: f64) -> Self {
         let turn = DVec2::from_angle(roll_rad);
         let probe = |point: &&ContourPoint| {
             let place = middle + turn.rotate(point.pixel - middle) * factor;
             Probe::new(picture, place, turn.rotate(point.normal))
         };
-        let probes: Vec<Probe> = outline.iter().map(probe).collect();
-        for (x, y) in (-shifts..=shifts).flat_map(|y| (-shifts..=shifts).map(move |x| (x, y))) {
-            let rating = rate(picture, &probes, (x * STEP_PX, y * STEP_PX));
-            if best.as_ref().is_none_or(|(most, _)| rating > *most) {
-                let pixel = middle + DVec2::new(f64::from(x), f64::from(y)) * f64::from(STEP_PX);
-                let place = picture.camera.unproject(pixel) * (center.z / factor);
-                let rolled = rotation_from_rotation_vector(center.normalize_or(DVec3::Z) * roll_rad);
-                best =
-                    Some((rating, (Pose::rotation_about(center, rolled) * view).translated(place - center)));
-            }
-        }
+        Self { roll_rad, factor, probes: points.iter().map(probe).collect() }
     }
-    best
 }
 
 /// A point of an outline in whole pixels, which can be shifted without looking at anything again.
@@ -160,10 +193,17 @@ impl Probe {
 }
 
 /// From 0 to 2: the edges under the outline, and how little the colours on its two sides have in common (Bhattacharyya).
-fn rate(picture: &Picture, probes: &[Probe], (right, down): (i32, i32)) -> f32 {
+fn rate<'a>(
+    picture: &Picture,
+    labels: &[u8],
+    probes: impl ExactSizeIterator<Item = &'a Probe>,
+    [right, down]: [i32; 2],
+) -> f32 {
     let (width, height) = (picture.width as i32, picture.height as i32);
-    let (mut inside, mut outside) = ([0.0_f32; COLORS], [0.0_f32; COLORS]);
+    let (mut inside, mut outside) = ([0_u32; COLORS], [0_u32; COLORS]);
     let (mut edges, mut count) = (0.0_f32, 0.0_f32);
+    let fewest = SMALLEST_PART * probes.len() as f32;
+    let label = |index: i32| labels.get(index as usize).map_or(0, |&label| usize::from(label) % COLORS);
     for probe in probes {
         let (x, y) = (probe.x + right, probe.y + down);
         if x < BORDER_PX || y < BORDER_PX || x >= width - BORDER_PX || y >= height - BORDER_PX {
@@ -173,13 +213,13 @@ fn rate(picture: &Picture, probes: &[Probe], (right, down): (i32, i32)) -> f32 {
         edges += picture.edge_at(index as usize, probe.normal);
         count += 1.0;
         for k in 0..BESIDE_PX.len() {
-            inside[picture.label((index + probe.inside[k]) as usize)] += 1.0;
-            outside[picture.label((index + probe.outside[k]) as usize)] += 1.0;
+            inside[label(index + probe.inside[k])] += 1;
+            outside[label(index + probe.outside[k])] += 1;
         }
     }
-    if count < SMALLEST_PART * probes.len() as f32 {
+    if count < fewest {
         return 0.0;
     }
-    let common: f32 = inside.iter().zip(&outside).map(|(a, b)| (a * b).sqrt()).sum();
+    let common = inside.iter().zip(&outside).map(|(&a, &b)| (a as f32 * b as f32).sqrt()).sum::<f32>();
     edges / count + 1.0 - common / (BESIDE_PX.len() as f32 * count)
 }
