@@ -55,6 +55,7 @@ pub const FLOWS: &[Flow] = &[
     Flow::on(WEBGL, "startup", startup::startup),
     Flow::on(WEBGPU, "startup-webgpu", startup::startup).long(),
     Flow::on(WEBGL, "example", startup::example),
+    Flow::on(WEBGL, "no-folders", startup::no_folders),
     Flow::on(BOTH, "path", path::path),
     Flow::on(WEBGL, "late-files", path::late_files),
     Flow::on(BOTH, "masks", masks::three_samples),

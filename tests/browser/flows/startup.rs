@@ -1,6 +1,6 @@
 //! How the page begins: its renderer, its time, and the example.
 
-use anyhow::ensure;
+use anyhow::{Context as _, ensure};
 
 use crate::api::{PATIENCE, Perf};
 use crate::context::{Context, dist_folder};
@@ -57,5 +57,21 @@ pub fn example(context: &mut Context) -> anyhow::Result<()> {
     let page = context.start("example")?;
     let opened = page.wait_for_state(has_scene, PATIENCE)?;
     ensure!(opened.scene() == clicked.scene(), "?example opens another scene than the button");
+    Ok(())
+}
+
+/// What is shipped names no folder of the machine that built it.
+pub fn no_folders(_: &mut Context) -> anyhow::Result<()> {
+    let home = std::env::home_dir().context("There is no home folder to look for")?;
+    let home = home.into_os_string().into_encoded_bytes();
+    let modules = std::fs::read_dir(dist_folder())?.filter_map(|entry| Some(entry.ok()?.path()));
+    let modules: Vec<_> = modules.filter(|path| path.extension().is_some_and(|it| it == "wasm")).collect();
+    ensure!(!modules.is_empty(), "The built page has no wasm module");
+    for module in modules {
+        let bytes = std::fs::read(&module)?;
+        let at = bytes.windows(home.len()).position(|window| window == home);
+        let said = at.map(|at| String::from_utf8_lossy(&bytes[at..bytes.len().min(at + 100)]).into_owned());
+        ensure!(said.is_none(), "{} says: {}", module.display(), said.unwrap_or_default());
+    }
     Ok(())
 }

@@ -43,6 +43,7 @@ pub fn wasm(profile: Profile) -> anyhow::Result<Wasm> {
     command
         .args(["rustc", "--package", "pinpose", "--lib", "--crate-type", "cdylib"])
         .args(["--profile", profile.cargo_name(), "--target", TARGET])
+        .args(["--config", &without_folders(&crate_folders())])
         .arg("--message-format=json-render-diagnostics")
         // An exported RUSTFLAGS speaks of the native machine, and would replace the configuration's flags
         // for wasm, simd128 among them.
@@ -53,6 +54,22 @@ pub fn wasm(profile: Profile) -> anyhow::Result<Wasm> {
     ensure!(output.status.success(), "The page did not compile");
     let messages = String::from_utf8_lossy(&output.stdout);
     messages.lines().find_map(compiled_wasm).context("Cargo did not say where it put pinpose.wasm")
+}
+
+/// Where cargo unpacks the crates that it downloads: a folder for each registry.
+fn crate_folders() -> Vec<PathBuf> {
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let Some(home) = home.or_else(|| Some(std::env::home_dir()?.join(".cargo"))) else { return Vec::new() };
+    let Ok(registries) = home.join("registry/src").read_dir() else { return Vec::new() };
+    registries.flatten().map(|registry| registry.path()).collect()
+}
+
+/// Flags for the compiler, as a line of cargo's configuration: where a panic can happen the module has the path of its source,
+/// and the builder's own folders are nobody's business.
+fn without_folders(folders: &[PathBuf]) -> String {
+    let flag = |folder: &PathBuf| format!("--remap-path-prefix={}=crates", folder.display());
+    let flags: Vec<String> = folders.iter().map(flag).collect();
+    format!("target.{TARGET}.rustflags={}", Value::from(flags))
 }
 
 /// Reads one of cargo's messages; the one about our module says where it is.
@@ -104,7 +121,16 @@ pub fn bindings(wasm: &Wasm, profile: Profile) -> anyhow::Result<Bindings> {
 
 #[cfg(test)]
 mod tests {
-    use super::compiled_wasm;
+    use super::{compiled_wasm, without_folders};
+
+    #[test]
+    fn folders_of_crates_are_left_out_whatever_they_are_called() {
+        assert_eq!(without_folders(&[]), "target.wasm32-unknown-unknown.rustflags=[]");
+        assert_eq!(
+            without_folders(&[r"C:\a b\src".into()]),
+            r#"target.wasm32-unknown-unknown.rustflags=["--remap-path-prefix=C:\\a b\\src=crates"]"#
+        );
+    }
 
     #[test]
     fn cargo_says_where_the_module_is_and_which_version() {
