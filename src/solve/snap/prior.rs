@@ -11,6 +11,7 @@ use crate::solve::pins::Pin;
 
 /// Noise of a click: what a pin pulls with.
 const PIN_SIGMA_PX: f64 = 2.0;
+const PINS_OF_A_POSE: usize = 4;
 /// How far cameras' curves are from the usual one, and outlines from where meshes have them: one standard deviation.
 const SHARED_SIGMA: Shared = Shared { tone: 2.0, growth_px: 0.15 };
 
@@ -34,10 +35,18 @@ struct Spread {
 
 impl Prior {
     fn spread(&self) -> Spread {
-        match self.reach {
+        let Spread { turn_rad, depth, shift_px } = match self.reach {
             SnapReach::Near => Spread { turn_rad: 5_f64.to_radians(), depth: 0.04, shift_px: 10.0 },
             SnapReach::Wide => Spread { turn_rad: 12_f64.to_radians(), depth: 0.08, shift_px: 20.0 },
-        }
+        };
+        // A start that pins made says nothing that the pins do not say themselves.
+        let factor = if self.is_pinned() { 10.0 } else { 1.0 };
+        Spread { turn_rad: factor * turn_rad, depth: factor * depth, shift_px: factor * shift_px }
+    }
+
+    /// Whether there are pins enough to make a pose of.
+    pub fn is_pinned(&self) -> bool {
+        self.pins.iter().filter(|pin| pin.enabled).count() >= PINS_OF_A_POSE
     }
 
     /// Adds what pins want of a pose, for small motions of it about `pivot`, in camera axes.

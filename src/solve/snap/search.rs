@@ -29,8 +29,9 @@ const NEAR: Reach = Reach { shift_px: 13.0, depth: 0.04, roll_rad: 0.1, rings_ra
 const WIDE: Reach = Reach { shift_px: 26.0, depth: 0.07, roll_rad: 0.25, rings_rad: &[0.23, 0.115] };
 /// Views of a near and of a wide ring.
 const VIEWS_PER_RING: [usize; 2] = [4, 8];
-/// Pins say where the object is: then no farther than this is looked.
+/// Pins say where the object is: then no farther than this is looked. What clicks leave open most is the depth.
 const SHIFT_WITH_PINS_PX: f64 = 4.0;
+const DEPTH_WITH_PINS: f64 = 2.0;
 /// Between tried places, in pixels of the small copy: an edge is two of them wide there.
 const STEP_PX: i32 = 2;
 /// At first every so many points of an outline are looked at, and then all, where one place in so many is left.
@@ -110,10 +111,11 @@ fn best_place(sight: &Sight, model: &ContourModel, prior: &Prior, turn: DVec3) -
     if points.len() < FEWEST_POINTS {
         return None;
     }
+    let depth = if prior.is_pinned() { DEPTH_WITH_PINS * reach.depth } else { reach.depth };
     let sides = [-1.0, 0.0, 1.0];
     let outlines: Vec<Outline> = sides
         .into_iter()
-        .flat_map(|roll| sides.map(|scale| (reach.roll_rad * roll, 1.0 + reach.depth * scale)))
+        .flat_map(|roll| sides.map(|scale| (reach.roll_rad * roll, 1.0 + depth * scale)))
         .map(|(roll_rad, factor)| Outline::new(picture, &points, middle, roll_rad, factor))
         .collect();
     let has_pins = prior.pins.iter().filter(|pin| pin.enabled).count() > 1;

@@ -17,11 +17,16 @@ impl Choices {
     pub const ALL: Self = Self { views: true, modes: true };
 }
 
+/// What the choices are drawn in, for others that keep clear of them.
+pub fn area() -> Id {
+    Id::unique("view chooser")
+}
+
 pub fn draw(ui: &Ui, whole: Rect, session: &Session, choices: Choices, commands: &mut Vec<Command>) {
     if session.photo().is_none() || !(choices.views || choices.modes) {
         return;
     }
-    Area::new(Id::unique("view chooser"))
+    Area::new(area())
         .order(Order::Middle)
         .pivot(Align2::LEFT_TOP)
         .fixed_pos(whole.left_top() + Vec2::splat(10.0))

@@ -2,12 +2,14 @@
 
 use egui::{Align2, Area, Id, Order, Rect, RichText, Ui, Vec2};
 
+use super::chooser;
 use crate::scene::{AnnotationState, ObjectId, PhotoId};
 use crate::session::{Command, HalfPin, Session, Tool};
 use crate::ui::{Asked, Surroundings, theme};
 
-/// In a narrower view the line goes below the choices in the corner.
-const WIDE: f32 = 1000.0;
+/// From the view's top to the line: beside the choices in the corner, and below them where it would lie on them.
+const TOPS: [f32; 2] = [12.0, 52.0];
+const GAP: f32 = 12.0;
 
 struct Hint {
     text: String,
@@ -19,8 +21,14 @@ pub fn draw(ui: &Ui, rect: Rect, session: &Session, around: &Surroundings<'_>, a
         return;
     }
     let Some(hint) = hint(session) else { return };
-    let top = if rect.width() < WIDE { 52.0 } else { 12.0 };
-    Area::new(Id::unique("hint"))
+    // Each text has its own area: egui shows one only when its size is known.
+    let id = Id::unique("hint").with(&hint.text);
+    let area_of = |id| ui.memory(|memory| memory.area_rect(id));
+    let is_beside = area_of(chooser::area())
+        .zip(area_of(id))
+        .is_none_or(|(choices, line)| rect.center().x - 0.5 * line.width() > choices.right() + GAP);
+    let top = if is_beside { TOPS[0] } else { TOPS[1] };
+    Area::new(id)
         .order(Order::Middle)
         .pivot(Align2::CENTER_TOP)
         .fixed_pos(rect.center_top() + Vec2::new(0.0, top))
