@@ -9,7 +9,7 @@ use crate::ui::{Asked, Surroundings, theme};
 
 /// From the view's top to the line: beside the choices in the corner, and below them where it would lie on them.
 const TOPS: [f32; 2] = [12.0, 52.0];
-const GAP: f32 = 12.0;
+const GAP: f32 = 4.0;
 
 struct Hint {
     text: String,
