@@ -75,7 +75,7 @@ impl PinPose {
         sort_short(&mut fits, |a, b| a.number.cmp(&b.number));
         let (photo, object, _) = self.session.selected_annotation().filter(|_| !fits.is_empty())?;
         let scene = self.session.scene();
-        let others = scene.objects_in(photo).filter(|(other, _)| other.id != object);
+        let others = scene.placed_beside(photo, object);
         Some(Asked {
             photo,
             object,

@@ -313,6 +313,8 @@ impl PinPose {
     }
 
     fn after_saving(&mut self, next: Next) {
+        // What is done of a batch belongs to the scene that is left.
+        self.cancel_snap();
         self.scenes.next = Some(next);
         self.go_on();
     }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 
 use super::PinPose;
-use crate::math::Pose;
+use crate::math::{Intrinsics, Pose};
 use crate::mesh::Mesh;
 use crate::photo::Pixels;
 use crate::platform;
@@ -40,12 +40,13 @@ pub struct Snapping {
     animation: Option<Animation>,
 }
 
-/// Whose pose is to be refined, from where.
+/// Whose pose is to be refined, from where, and as which camera sees it.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
     photo: PhotoId,
     object: ObjectId,
     start: Pose,
+    camera: Intrinsics,
     reach: SnapReach,
 }
 
@@ -93,11 +94,23 @@ impl Snapping {
 
 impl PinPose {
     pub(super) fn start_snap(&mut self, photo: PhotoId, object: ObjectId, reach: SnapReach) {
-        let start = self.session.scene().annotation(photo, object);
-        let Some(start) = start.map(|annotation| annotation.camera_from_object) else { return };
-        self.snapping.cancel();
-        self.snapping.asked = Some(Asked { photo, object, start, reach });
+        self.cancel_snap();
+        self.snapping.asked = self.asked_of(photo, object, reach);
         self.ctx.request_repaint();
+    }
+
+    /// `None` where the object is not in the photo.
+    fn asked_of(&self, photo: PhotoId, object: ObjectId, reach: SnapReach) -> Option<Asked> {
+        let scene = self.session.scene();
+        let start = scene.annotation(photo, object)?.camera_from_object;
+        Some(Asked { photo, object, start, camera: scene.photo(photo)?.camera, reach })
+    }
+
+    /// Is all still as it was when this was asked? Somebody may have gone on by hand.
+    fn still_stands(&self, asked: &Asked) -> bool {
+        let present = self.asked_of(asked.photo, asked.object, asked.reach);
+        present.is_some_and(|present| (present.start, present.camera) == (asked.start, asked.camera))
+            && self.session.check_movable((asked.photo, asked.object)).is_ok()
     }
 
     /// Once a frame: what is missing is sent for; then the solver works for its slice.
@@ -105,6 +118,10 @@ impl PinPose {
         for (sha256, mesh) in self.loading.take_solver_meshes() {
             self.snapping.wanted.retain(|wanted| *wanted != sha256);
             self.snapping.meshes.push((sha256, mesh));
+        }
+        // What ends now would end what the hand is doing.
+        if self.session.gesture_under_way() {
+            return;
         }
         if self.snapping.asked.is_none() && self.snapping.running.is_none() {
             self.go_on_with_batch();
@@ -164,12 +181,12 @@ impl PinPose {
         let depth = self.depth_for_snap(asked.photo);
         let scene = self.session.scene();
         let annotation = scene.annotation(asked.photo, asked.object);
-        let (Some(photo), Some(annotation)) = (scene.photo(asked.photo), annotation) else { return };
+        let Some(annotation) = annotation else { return };
         let Some(model) = self.contour_model(asked.object) else {
             return self.leave_out("This mesh has no surface to snap to the photo");
         };
         let batch = self.snapping.batch.as_ref();
-        let others = scene.objects_in(asked.photo).filter(|(other, _)| other.id != asked.object);
+        let others = scene.placed_beside(asked.photo, asked.object);
         let occluder = |(other, annotation): (&Object, &Annotation)| {
             let moved = batch.and_then(|batch| batch.moved_to(asked.photo, other.id));
             Some((self.contour_model(other.id)?, moved.unwrap_or(annotation.camera_from_object)))
@@ -180,7 +197,7 @@ impl PinPose {
             depth,
         };
         let options = SnapOptions { reach: asked.reach, mask: mask.map(Mask::of_picture) };
-        let snap = Snap::with(pixels, &photo.camera, model, &asked.start, hints, &options);
+        let snap = Snap::with(pixels, &asked.camera, model, &asked.start, hints, &options);
         self.snapping.running = Some((asked, Box::new(snap), 0.0));
     }
 
@@ -247,9 +264,7 @@ impl PinPose {
             return;
         }
         let Asked { photo, object, start, .. } = asked;
-        let present = self.session.scene().annotation(photo, object);
-        // Somebody has gone on by hand.
-        if present.is_none_or(|annotation| annotation.camera_from_object != start) {
+        if !self.still_stands(&asked) {
             return;
         }
         if outcome.verdict != SnapVerdict::Improved {
@@ -258,7 +273,11 @@ impl PinPose {
         }
         let camera_from_object = outcome.camera_from_object;
         let covariance = outcome.covariance.map(Box::new);
-        self.apply(Command::TakeSnap { photo, object, camera_from_object, covariance });
+        let taken = self.try_apply(Command::TakeSnap { photo, object, camera_from_object, covariance });
+        if let Err(error) = taken {
+            self.notify(Notice::warning(error));
+            return;
+        }
         let began_s = self.ctx.input(|input| input.time);
         self.snapping.animation =
             Some(Animation { photo, object, from: start, to: camera_from_object, began_s });

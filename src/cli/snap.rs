@@ -49,6 +49,10 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
             if annotation.state == AnnotationState::Untouched {
                 continue;
             }
+            if let Err(error) = session.check_movable((photo.id, object.id)) {
+                lines.push(left(photo, object, &error.to_string()));
+                continue;
+            }
             let outcome = snap(&scene, &seen, object, annotation, &models)?;
             if let Some(outcome) = &outcome {
                 take(&mut session, photo, object, outcome)?;
@@ -110,9 +114,8 @@ fn snap(
     let Seen { photo, pixels, depth } = seen;
     let model_of =
         |id: ObjectId| models.iter().find(|(known, _)| *known == id).and_then(|(_, model)| model.clone());
-    let others = scene.objects_in(photo.id).filter(|(other, _)| other.id != object.id);
-    let occluders = others
-        .filter(|(_, annotation)| annotation.state != AnnotationState::Untouched)
+    let occluders = scene
+        .placed_beside(photo.id, object.id)
         .filter_map(|(other, annotation)| Some((model_of(other.id)?, annotation.camera_from_object)));
     let hints =
         SnapHints { pins: annotation.pins.clone(), occluders: occluders.collect(), depth: depth.clone() };
@@ -132,16 +135,20 @@ fn take(session: &mut Session, photo: &Photo, object: &Object, outcome: &SnapOut
         camera_from_object: outcome.camera_from_object,
         source: PoseSource::Snap,
     };
-    // A locked or confirmed pose stays, and that is said.
     session
         .apply(command, platform::now_ms())
         .map(drop)
         .map_err(|error| Failure::Input(vec![format!("{}: {error}", photo.name)]))
 }
 
+/// Of a pose that was not tried.
+fn left(photo: &Photo, object: &Object, why: &str) -> Value {
+    json!({ "photo": photo.name, "object": object.name, "verdict": why })
+}
+
 fn describe(photo: &Photo, object: &Object, outcome: Option<&SnapOutcome>) -> Value {
     let Some(outcome) = outcome else {
-        return json!({ "photo": photo.name, "object": object.name, "verdict": "The mesh has no surface." });
+        return left(photo, object, "The mesh has no surface.");
     };
     json!({
         "photo": photo.name,

@@ -165,6 +165,18 @@ impl Scene {
         self.objects.iter().filter_map(move |object| Some((object, self.annotation(photo, object.id)?)))
     }
 
+    /// The other objects of a photo that somebody has placed: what may be before this one. One that still waits where it came
+    /// in is nowhere.
+    pub fn placed_beside(
+        &self,
+        photo: PhotoId,
+        object: ObjectId,
+    ) -> impl Iterator<Item = (&Object, &Annotation)> {
+        self.objects_in(photo).filter(move |(other, annotation)| {
+            other.id != object && annotation.state != AnnotationState::Untouched
+        })
+    }
+
     /// What has been done in a photo: the least of what has been done with its objects; `None` where it has none.
     pub fn photo_state(&self, photo: PhotoId) -> Option<AnnotationState> {
         self.annotations.range(poses_in(photo)).map(|(_, annotation)| annotation.state).min()

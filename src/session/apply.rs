@@ -110,7 +110,7 @@ impl Session {
             Command::TakeSnap { photo, object, camera_from_object, covariance } => {
                 self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
                 self.note_snap((photo, object), covariance.map(|covariance| *covariance));
-                self.snapped_revision = Some(self.revision);
+                self.snapped = self.history.newest().map(|step| ((photo, object), step));
                 Ok(Vec::new())
             }
             Command::TakeSnaps { snaps, summary, least_sure } => {
@@ -131,13 +131,20 @@ impl Session {
                 self.half_pin = None;
                 if let Some(gesture) = self.gesture.take() {
                     self.restore(gesture.before);
-                } else if self.snapped_revision == Some(self.revision) {
+                } else if self.is_snap_in_view() {
                     return Ok(self.undo());
                 }
                 Ok(Vec::new())
             }
             Command::ReturnTo(entry) => self.return_to(&entry, now_ms),
         }
+    }
+
+    /// Was a snap of the selected pose the last thing that was done? To look at it from all sides is no thing done.
+    fn is_snap_in_view(&self) -> bool {
+        let selected = self.selected_annotation().map(|(photo, object, _)| (photo, object));
+        self.snapped
+            .is_some_and(|(target, step)| selected == Some(target) && self.history.newest() == Some(step))
     }
 
     /// Names the scene in all of its history: what it is called is no step of the work.

@@ -37,7 +37,7 @@ pub fn needs_selected_pose(session: &Session) -> Reason {
 }
 
 pub fn needs_snappable(session: &Session) -> Reason {
-    session.snappable().is_empty().then_some("no pose is there that is neither locked nor confirmed")
+    session.snappable().is_empty().then_some("no object is placed whose pose is neither locked nor confirmed")
 }
 
 pub fn needs_pins(session: &Session) -> Reason {

@@ -53,6 +53,8 @@ impl Burst {
 #[derive(Debug)]
 struct Step {
     label: String,
+    /// Counted up, so that no two steps are taken for each other.
+    number: u64,
     snapshot: Snapshot,
     bytes: usize,
 }
@@ -63,6 +65,7 @@ pub struct History {
     undo: VecDeque<Step>,
     redo: Vec<Step>,
     undo_bytes: usize,
+    steps_so_far: u64,
 }
 
 impl History {
@@ -70,7 +73,7 @@ impl History {
     pub fn push(&mut self, label: impl Into<String>, before: Snapshot) {
         self.redo.clear();
         let bytes = self.bytes_of(&before);
-        self.push_step(Step { label: label.into(), snapshot: before, bytes });
+        self.push_step(label.into(), before, bytes);
         while self.undo_bytes > MAX_BYTES && self.undo.len() > 1 {
             self.undo_bytes -= self.undo.pop_front().map_or(0, |step| step.bytes);
         }
@@ -80,13 +83,14 @@ impl History {
     pub fn undo(&mut self, present: Snapshot) -> Option<Snapshot> {
         let step = self.undo.pop_back()?;
         self.undo_bytes -= step.bytes;
-        self.redo.push(Step { label: step.label, snapshot: present, bytes: step.bytes });
-        Some(step.snapshot)
+        let Step { label, number, snapshot, bytes } = step;
+        self.redo.push(Step { label, number, snapshot: present, bytes });
+        Some(snapshot)
     }
 
     pub fn redo(&mut self, present: Snapshot) -> Option<Snapshot> {
         let step = self.redo.pop()?;
-        self.push_step(Step { label: step.label, snapshot: present, bytes: step.bytes });
+        self.push_step(step.label, present, step.bytes);
         Some(step.snapshot)
     }
 
@@ -97,6 +101,11 @@ impl History {
         }
     }
 
+    /// Which step undo would take back.
+    pub fn newest(&self) -> Option<u64> {
+        self.undo.back().map(|step| step.number)
+    }
+
     pub fn undo_label(&self) -> Option<&str> {
         self.undo.back().map(|step| step.label.as_str())
     }
@@ -105,9 +114,10 @@ impl History {
         self.redo.last().map(|step| step.label.as_str())
     }
 
-    fn push_step(&mut self, step: Step) {
-        self.undo_bytes += step.bytes;
-        self.undo.push_back(step);
+    fn push_step(&mut self, label: String, snapshot: Snapshot, bytes: usize) {
+        self.undo_bytes += bytes;
+        self.steps_so_far += 1;
+        self.undo.push_back(Step { label, number: self.steps_so_far, snapshot, bytes });
     }
 
     /// What a snapshot keeps alive that the one before it does not.

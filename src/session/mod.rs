@@ -62,8 +62,8 @@ pub struct Session {
     nudge: NudgeSettings,
     tool: Tool,
     half_pin: Option<HalfPin>,
-    /// After a snap, until anything else changes.
-    snapped_revision: Option<u64>,
+    /// The pose that was snapped last, and the step of the history that did it.
+    snapped: Option<((PhotoId, ObjectId), u64)>,
     pin_report: pins::ReportCache,
     fit_scores: fits::FitScores,
     /// Of poses that a snap has set, with the pose that it is of.

@@ -14,9 +14,9 @@ use crate::math::Pose;
 use crate::scene::{
     Annotation, AnnotationState, CameraOrigin, ObjectId, PhotoId, Pin, PoseSource, file_stem,
 };
+use crate::solve::TwistCovariance;
 use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
 use crate::solve::snap::SnapReach;
-use crate::solve::{FreeTurns, TwistCovariance, Uncertainty};
 
 /// A pose's place: one object in one photo.
 type Target = (PhotoId, ObjectId);
@@ -44,7 +44,6 @@ pub struct PinReport {
     pub alternatives: Vec<PinPose>,
     /// Of the pose from the pins, at the focal length as it is; `None` where they leave it open.
     pub covariance: Option<TwistCovariance>,
-    pub uncertainty: Option<Uncertainty>,
     /// The present pose is the one that the pins give.
     pub is_solved: bool,
 }
@@ -77,8 +76,6 @@ impl Session {
 
     fn new_report(&self, target: Target, annotation: &Annotation) -> Option<PinReport> {
         let camera = self.scene.photo(target.0)?.camera;
-        let object = self.scene.object(target.1)?;
-        let sphere = object.mesh.mesh.sphere();
         let (pins, pose) = (&annotation.pins, &annotation.camera_from_object);
         if pins.is_empty() {
             return None;
@@ -93,11 +90,6 @@ impl Session {
             residuals_px,
             is_solved: solution.as_ref().is_some_and(|solution| is_same(&solution.camera_from_object, pose)),
             covariance: solution.as_ref().and_then(|solution| solution.covariance),
-            uncertainty: solution.as_ref().and_then(|solution| {
-                let pose = &solution.camera_from_object;
-                let free = FreeTurns::of(&object.symmetries, pose, sphere.center, sphere.radius);
-                Some(Uncertainty::of(&solution.covariance?.without(&free), pose, sphere.center))
-            }),
             misclicks: solution.as_ref().map_or_else(Vec::new, |solution| solution.misclicks.clone()),
             advice: solution.as_ref().map_or_else(Vec::new, |solution| solution.advice.clone()),
             alternatives: solution.map_or_else(Vec::new, |solution| solution.alternatives),
@@ -226,7 +218,7 @@ impl Session {
         self.record_changes(&before.scene, "Focal length from pins");
         self.history.push("Focal length from pins", before);
         Ok(vec![Effect::Notify(Notice::info(format!(
-            "fx = {:.0} px, ± {:.1} %: as many per cent the distance is unsure",
+            "fx = {:.0} px, ± {:.1} %; the distance is as unsure as that",
             found.camera.fx,
             100.0 * found.relative_sigma
         )))])
@@ -277,6 +269,7 @@ impl Session {
 
     pub(super) fn clear_pins(&mut self) -> Applied {
         let Some((photo, object, _)) = self.selected_annotation() else { return Ok(Vec::new()) };
+        self.check_movable((photo, object))?;
         self.change("Remove all pins", |scene| {
             if let Some(annotation) = scene.annotations.get_mut(&(photo, object)) {
                 annotation.pins.clear();

@@ -147,7 +147,7 @@ commands![
     (ExportPins, "export_pins", Pose, "Save pins (JSON)", "Points, pixels and the camera, as \"pinpose pins\" reads them", None, needs_pins),
     (Snap, "snap", Pose, "Snap", "Refine the selected object's pose to the photo: its outline, its edges, its pins", key("Space"), needs_selected_pose),
     (SnapWide, "snap_wide", Pose, "Snap from farther", "The same for a pose that is off by up to 20° or a fifth of the object: more starts are tried", shift("Space"), needs_selected_pose),
-    (SnapAll, "snap_all", Pose, "Snap on all photos", "Refine every pose that is neither locked nor confirmed, on all photos, as one step", None, needs_snappable),
+    (SnapAll, "snap_all", Pose, "Snap on all photos", "Refine every placed pose that is neither locked nor confirmed, on all photos, as one step", None, needs_snappable),
     (FindSymmetries, "find_symmetries", Pose, "Find symmetries", "Look for the turns that leave the selected object's mesh as it is: the Symmetry panel lists them", None, needs_selection),
     (ConfirmAndNext, "confirm", Pose, "Confirm and next", "Confirm this photo's poses, carry them to an untouched next photo, and go there", key("Enter"), needs_objects_here),
     (Reopen, "reopen", Pose, "Reopen", "Take back the confirmation of this photo's poses", shift("Enter"), needs_confirmed),

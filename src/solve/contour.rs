@@ -44,7 +44,7 @@ pub struct ContourPoint {
 #[derive(Debug, Clone)]
 pub struct ContourModel {
     mesh: Mesh,
-    /// Unit normals.
+    /// Unit normals of the faces, outward.
     normals: Vec<DVec3>,
     edges: Vec<Edge>,
     diameter_mm: f64,
@@ -163,12 +163,13 @@ impl ContourModel {
     /// `None` for a mesh without a single proper triangle.
     pub fn new(mesh: &Mesh) -> Option<Self> {
         let mesh = simplified(mesh, MAX_TRIANGLES)?;
+        let outward = if is_inside_out(&mesh) { -1.0 } else { 1.0 };
         let normals: Vec<DVec3> = mesh
             .triangles()
             .iter()
             .map(|&triangle| {
                 let [a, b, c] = mesh.corners(triangle);
-                (b - a).cross(c - a).normalize_or_zero()
+                outward * (b - a).cross(c - a).normalize_or_zero()
             })
             .collect();
         let edges = edges(&mesh, &normals);
@@ -321,6 +322,19 @@ struct Seen<'a> {
     is_silhouette: bool,
 }
 
+/// Whether triangles turn the other way round than they should, seen from outside: many a program does not care. Of a sheet,
+/// which encloses nothing, it cannot be told.
+fn is_inside_out(mesh: &Mesh) -> bool {
+    const SMALLEST_PART: f64 = 1e-3;
+    let (bounds, size) = (mesh.bounds(), mesh.bounds().size());
+    let volume = |&triangle: &[u32; 3]| {
+        let [a, b, c] = mesh.corners(triangle).map(|corner| corner - bounds.center());
+        a.dot(b.cross(c)) / 6.0
+    };
+    let enclosed: f64 = mesh.triangles().iter().map(volume).sum();
+    enclosed < -SMALLEST_PART * size.x * size.y * size.z
+}
+
 fn edges(mesh: &Mesh, normals: &[DVec3]) -> Vec<Edge> {
     let mut faces_at: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
     for (face, &[a, b, c]) in mesh.triangles().iter().enumerate() {
@@ -360,6 +374,16 @@ mod tests {
         let mut points = model.points(&camera(), pose, &view, 2.0);
         points.retain(|point| point.kind == EdgeKind::Outline);
         points
+    }
+
+    #[test]
+    fn a_mesh_that_is_inside_out_has_the_same_outline() {
+        let pose = Pose::IDENTITY.translated(DVec3::new(10.0, -20.0, 700.0));
+        let mesh = sphere(80.0, 40, 80);
+        let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let turned = Mesh::new(MeshData { triangles: turned, ..mesh.data().clone() }).unwrap();
+        assert_eq!(outline(&turned, &pose).len(), outline(&mesh, &pose).len());
+        assert!(outline(&mesh, &pose).len() > 100);
     }
 
     /// Mean and largest signed distance of the points outside of a shape's outline.

@@ -30,9 +30,11 @@ impl FreeTurns {
         let Some(first) = symmetries.continuous.first() else { return free };
         let is_sphere =
             symmetries.continuous.iter().any(|other| other.axis.cross(first.axis).length() > PARALLEL);
-        // Turns about two axes make the turns about all.
+        // Turns about two axes make the turns about all, through where they meet: of a ball that is its middle.
         let axes = if is_sphere { DVec3::AXES.to_vec() } else { vec![first.axis] };
-        let through_camera_mm = camera_from_object.transform_point(first.offset_mm);
+        let along = first.axis.normalize_or_zero();
+        let foot_mm = first.offset_mm + along * along.dot(center_mm - first.offset_mm);
+        let through_camera_mm = camera_from_object.transform_point(foot_mm);
         for axis in axes {
             free.add(camera_from_object.rotation * axis, through_camera_mm);
         }

@@ -201,6 +201,21 @@ fn poses_are_snapped_to_their_photos() {
     assert!(snap["moved_mm"].as_f64().unwrap() < 30.0, "{snap:#}");
     let written: Value = serde_json::from_slice(&std::fs::read(&out).unwrap()).unwrap();
     assert_eq!(written["photos"][0]["poses"][0]["mesh_file"], "obj_000001.ply");
+    // What is confirmed stays, and is no reason to give up.
+    let mut confirmed = written.clone();
+    confirmed["photos"][0]["poses"][0]["state"] = Value::from("confirmed");
+    let saved = out.with_file_name("confirmed.json");
+    std::fs::write(&saved, confirmed.to_string()).unwrap();
+    let saved = saved.display().to_string();
+    let images: Vec<String> =
+        files[..2].iter().map(|path| path.display().to_string()).chain([saved]).collect();
+    let mut arguments = vec!["snap", "--json"];
+    arguments.extend(images.iter().map(String::as_str));
+    let output = pinpose(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let verdict = answer["snaps"][0]["verdict"].as_str().unwrap();
+    assert!(verdict.contains("confirmed"), "{verdict}");
     let nothing = pinpose(&["snap", &folder.join("000019.png").display().to_string()]);
     assert_eq!(nothing.status.code(), Some(1));
 }

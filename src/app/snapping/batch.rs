@@ -49,7 +49,7 @@ impl Batch {
 
 impl PinPose {
     pub(in crate::app) fn start_batch(&mut self, targets: Vec<(PhotoId, ObjectId)>) {
-        self.snapping.cancel();
+        self.cancel_snap();
         self.snapping.batch = Some(Batch::new(targets));
         self.ctx.request_repaint();
     }
@@ -58,14 +58,11 @@ impl PinPose {
     pub(super) fn go_on_with_batch(&mut self) {
         let Some(batch) = &mut self.snapping.batch else { return };
         while let Some((photo, object)) = batch.waiting.pop_front() {
-            let annotation = self.session.scene().annotation(photo, object);
-            let Some(annotation) = annotation.filter(|_| self.session.check_movable((photo, object)).is_ok())
-            else {
+            if self.session.check_movable((photo, object)).is_err() {
                 batch.refused += 1;
                 continue;
-            };
-            let start = annotation.camera_from_object;
-            self.snapping.asked = Some(Asked { photo, object, start, reach: SnapReach::Near });
+            }
+            self.snapping.asked = self.asked_of(photo, object, SnapReach::Near);
             self.ctx.request_repaint();
             return;
         }
@@ -85,13 +82,8 @@ impl PinPose {
     }
 
     fn end_batch(&mut self, batch: Batch) {
-        // Where somebody has gone on by hand in the meantime, that stays.
-        let scene = self.session.scene();
-        let is_as_it_was = |(asked, _): &(Asked, SnapOutcome)| {
-            let present = scene.annotation(asked.photo, asked.object);
-            present.is_some_and(|annotation| annotation.camera_from_object == asked.start)
-        };
-        let moved: Vec<(Asked, SnapOutcome)> = batch.moved.into_iter().filter(is_as_it_was).collect();
+        let moved: Vec<(Asked, SnapOutcome)> =
+            batch.moved.into_iter().filter(|(asked, _)| self.still_stands(asked)).collect();
         let mut text = format!("Snapped {} of {} poses", moved.len(), batch.total);
         let stayed = batch.total - moved.len();
         if stayed > 0 {

@@ -26,7 +26,7 @@ impl fmt::Display for PinAdvice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooFew { pins: 0 } => {
-                write!(f, "No pins yet: add four, far apart and not all in one plane.")
+                write!(f, "No pins in use: add four, far apart and not all in one plane.")
             }
             Self::TooFew { pins: 1 } => {
                 write!(f, "One pin moves the object in the picture only. Add a second one far from it.")

@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::super::linear::{inverse, solve};
+use super::super::linear::{Matrix, congruent, inverse, solve};
 use super::super::motion::{motion_row, project_with_jacobian};
 use super::p3p::p3p;
 use super::refine::{Fit, Fitting, Kernel, residual};
@@ -17,6 +17,8 @@ use crate::math::{Intrinsics, Pose, sort_short};
 const GATE: f64 = 25.0;
 /// More triples than this are thinned out evenly, for the sake of a live solve; ten pins have 120.
 const MAX_TRIPLES: usize = 120;
+/// Pins that triples are made of: of more, every so many are taken.
+const MOST_IN_TRIPLES: usize = 24;
 /// Poses from triples that are looked at closely.
 const FINALISTS: usize = 4;
 
@@ -43,9 +45,12 @@ pub fn misclicks(camera: &Intrinsics, pins: &[Pin], options: &PinOptions) -> Vec
 /// The poses from triples that explain the most pins.
 fn finalists(camera: &Intrinsics, pins: &[Pin], options: &PinOptions) -> Vec<Pose> {
     let directions: Vec<_> = pins.iter().map(|pin| camera.unproject(pin.pixel).normalize()).collect();
-    let triples: Vec<[usize; 3]> = (0..pins.len())
-        .flat_map(|a| (a + 1..pins.len()).map(move |b| (a, b)))
-        .flat_map(|(a, b)| (b + 1..pins.len()).map(move |c| [a, b, c]))
+    let chosen: Vec<usize> = (0..pins.len()).step_by(pins.len().div_ceil(MOST_IN_TRIPLES)).collect();
+    let count = chosen.len();
+    let triples: Vec<[usize; 3]> = (0..count)
+        .flat_map(|a| (a + 1..count).map(move |b| (a, b)))
+        .flat_map(|(a, b)| (b + 1..count).map(move |c| [a, b, c]))
+        .map(|triple| triple.map(|place| chosen[place]))
         .collect();
     let cap = (10.0 * options.click_sigma_px).powi(2);
     let score = |pose: &Pose| -> f64 {
@@ -73,8 +78,12 @@ fn outside(camera: &Intrinsics, pins: &[Pin], pose: &Pose, options: &PinOptions)
             pins.iter().zip(&is_inside).filter(|(_, inside)| **inside).map(|(p, _)| *p).collect();
         let Some(fit) = plain_fit(camera, &inside, pose, options) else { return Vec::new() };
         pose = fit.pose;
+        let Some(covariance) = inverse(&fit.equations.h) else { return Vec::new() };
+        let degrees_of_freedom = (2 * inside.len()).saturating_sub(6).max(1) as f64;
+        let variance_px2 = options.click_sigma_px.powi(2).max(fit.equations.cost / degrees_of_freedom);
+        let covariance = covariance.map(|row| row.map(|value| value * variance_px2));
         let doubts: Vec<f64> =
-            pins.iter().map(|pin| doubt(camera, pin, &fit, inside.len(), options)).collect();
+            pins.iter().map(|pin| doubt(camera, pin, &fit, (&covariance, variance_px2))).collect();
         let joining = (0..pins.len())
             .filter(|&i| !is_inside[i] && doubts[i] < GATE)
             .min_by(|&i, &j| doubts[i].total_cmp(&doubts[j]));
@@ -94,21 +103,15 @@ fn plain_fit(camera: &Intrinsics, pins: &[Pin], start: Pose, options: &PinOption
     (pins.len() >= 4).then(|| fitting.descend(start)).flatten()
 }
 
-/// The squared distance of a pin from where a pose without it sees it, in units of what is expected.
-fn doubt(camera: &Intrinsics, pin: &Pin, fit: &Fit, pin_count: usize, options: &PinOptions) -> f64 {
+/// The squared distance of a pin from where a pose without it sees it, in units of what is expected: of the pose's covariance
+/// and of the variance of a click.
+fn doubt(camera: &Intrinsics, pin: &Pin, fit: &Fit, (covariance, variance_px2): (&Matrix<6>, f64)) -> f64 {
     let seen = fit.pose.transform_point(pin.point_mm);
-    let (Some((pixel, jacobian)), Some(covariance)) =
-        (project_with_jacobian(camera, seen), inverse(&fit.equations.h))
-    else {
-        return f64::INFINITY;
-    };
-    let degrees_of_freedom = (2 * pin_count).saturating_sub(6).max(1) as f64;
-    let sigma_squared = options.click_sigma_px.powi(2).max(fit.equations.cost / degrees_of_freedom);
+    let Some((pixel, jacobian)) = project_with_jacobian(camera, seen) else { return f64::INFINITY };
     let rows = jacobian.map(|gradient| motion_row(seen - fit.pivot_camera_mm, gradient));
-    let mut expected = super::super::linear::congruent(&rows, &covariance);
+    let mut expected = congruent(&rows, covariance);
     for (i, row) in expected.iter_mut().enumerate() {
-        row[i] += 1.0 / pin.weight;
-        row.iter_mut().for_each(|value| *value *= sigma_squared);
+        row[i] += variance_px2 / pin.weight;
     }
     let offset: DVec2 = pixel - pin.pixel;
     solve(&expected, &offset.to_array()).map_or(f64::INFINITY, |[x, y]| offset.dot(DVec2::new(x, y)))

@@ -14,6 +14,7 @@ mod sqpnp;
 
 use thiserror::Error;
 
+use crate::math::{Intrinsics, Pose};
 pub use crate::scene::Pin;
 pub use advice::PinAdvice;
 pub use focal::{FocalError, FocalSolution, solve_focal};
@@ -45,6 +46,14 @@ pub enum PinError {
     NeedsStart { pins: usize },
     #[error("no pose before the camera brings these pins to their pixels")]
     NoPose,
+}
+
+/// Those of the pins that count and that the others do not contradict.
+pub fn explained(camera: &Intrinsics, pins: &[Pin], start: &Pose) -> Vec<Pin> {
+    let solution = solve_pins(camera, pins, Some(start), &PinOptions::default());
+    let misclicks = solution.map_or_else(|_| Vec::new(), |solution| solution.misclicks);
+    let is_explained = |(number, pin): &(usize, &Pin)| pin.counts() && !misclicks.contains(number);
+    pins.iter().enumerate().filter(is_explained).map(|(_, pin)| *pin).collect()
 }
 
 /// Farther from the origin than this nothing is: the limit of a mesh's coordinates, and beyond any photo.

@@ -301,3 +301,26 @@ fn no_set_of_pins_ends_behind_the_camera_or_without_numbers() {
 fn no_set_of_a_million_ends_behind_the_camera_or_without_numbers() {
     hold_on_any_set(1_000_000);
 }
+
+#[test]
+fn what_is_switched_off_or_a_misclick_does_not_pull() {
+    let mut chance = Chance(21);
+    let pose = chance.pose(700.0);
+    let mut pins = clicked(&mut chance, 8, &pose, &camera(), 0.5);
+    pins[2].pixel += DVec2::new(50.0, -40.0);
+    pins[5].enabled = false;
+    let left = explained(&camera(), &pins, &pose);
+    let expected: Vec<Pin> = [0, 1, 3, 4, 6, 7].map(|number| pins[number]).to_vec();
+    assert_eq!(left, expected);
+}
+
+#[test]
+fn a_thousand_pins_take_no_longer_than_they_must() {
+    let mut chance = Chance(22);
+    let pose = chance.pose(700.0);
+    let mut pins = clicked(&mut chance, 1000, &pose, &camera(), 1.0);
+    pins[400].pixel.x += 90.0;
+    // All triples of so many, listed, are four gigabytes.
+    let solution = solve_pins(&camera(), &pins, None, &options()).unwrap();
+    assert_eq!(solution.misclicks, [400]);
+}

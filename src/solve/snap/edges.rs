@@ -39,8 +39,8 @@ fn search_line(picture: &Picture, colors: &ColorModel, point: &ContourPoint, rea
                 EdgeKind::Outline => 1.0,
                 EdgeKind::Inner | EdgeKind::Crease => 1.5,
             };
-            let variance_px = (kind_sigma_px * 0.8 / here).powi(2);
-            best = Some((liking, Pull { point: *point, offset_px, variance_px, tone_px: 0.0 }));
+            let variance_px2 = (kind_sigma_px * 0.8 / here).powi(2);
+            best = Some((liking, Pull { point: *point, offset_px, variance_px2, tone_px: 0.0 }));
         }
     }
     best.map(|(_, pull)| pull)
@@ -82,7 +82,7 @@ fn mask_border(picture: &Picture, point: &ContourPoint, reach_px: f64) -> Option
     nearest.map(|offset_px| Pull {
         point: *point,
         offset_px,
-        variance_px: MASK_SIGMA_PX * MASK_SIGMA_PX,
+        variance_px2: MASK_SIGMA_PX * MASK_SIGMA_PX,
         tone_px: 0.0,
     })
 }
@@ -121,7 +121,7 @@ fn measure_line(picture: &Picture, point: &ContourPoint, reach_px: usize) -> Opt
     Some(Pull {
         point: *point,
         offset_px: in_light.offset_px + USUAL_TONE * tone_px,
-        variance_px: sigma_px * sigma_px,
+        variance_px2: sigma_px * sigma_px,
         tone_px,
     })
 }

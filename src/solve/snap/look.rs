@@ -26,7 +26,8 @@ pub struct Look {
     /// One plus the number of the face that is seen, pixel by pixel.
     pub faces: Vec<u32>,
     pub points: Vec<ContourPoint>,
-    size_px: f64,
+    /// The object's diameter here.
+    pub size_px: f64,
     /// Points closer than two pixels to each other tell the same: what part of their weight is their own.
     pub independence: f64,
 }

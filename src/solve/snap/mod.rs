@@ -29,7 +29,7 @@ use super::TwistCovariance;
 use super::contour::ContourModel;
 use super::linear::{Matrix, inverse};
 use super::motion::step_between;
-use super::pins::Pin;
+use super::pins::{self, Pin};
 use crate::math::{Intrinsics, Pose};
 use crate::photo::Pixels;
 use crate::raster::Mask;
@@ -46,7 +46,7 @@ pub use score::SnapScore;
 /// What else is known of the object in this photo.
 #[derive(Debug, Clone, Default)]
 pub struct SnapHints {
-    /// Pins pull with the weight of a click each.
+    /// Pins pull with the weight of a click each, unless they are switched off or misclicks.
     pub pins: Vec<Pin>,
     /// Objects that may be before this one, with their poses.
     pub occluders: Vec<(Arc<ContourModel>, Pose)>,
@@ -106,7 +106,7 @@ pub struct SnapOutcome {
     pub verdict: SnapVerdict,
     pub score_before: f64,
     pub score_after: f64,
-    /// From the last normal equations; `None` where the start was returned.
+    /// From the last normal equations; `None` where the start was returned, or where they leave a direction open.
     pub covariance: Option<TwistCovariance>,
     /// How far the object was turned and its middle was moved.
     pub turned_rad: f64,
@@ -190,9 +190,10 @@ impl Snap {
         let sights = Sight::new(&given, LARGEST_OBJECT_PX)
             .zip(Sight::new(&given, LARGEST_SEARCHED_PX))
             .map(|(fine, small)| Arc::new(Sights { fine, small }));
+        let pins = pins::explained(camera, &hints.pins, start);
         Self {
             model,
-            prior: Prior { start: *start, pins: hints.pins, reach: options.reach },
+            prior: Prior { start: *start, pins, reach: options.reach },
             sights,
             score_before: None,
             search: Search::new(options.reach),
@@ -226,7 +227,7 @@ impl Snap {
         }
     }
 
-    /// With one for the start's score, and one for each choice of the best.
+    /// With one for the start's score, one for each choice of the best, and the end.
     fn steps_in_all(&self) -> u32 {
         let [rated, refined] = refinement::kept(self.prior.reach).map(|count| count as u32);
         self.search.steps() + rated + refined * (refinement::STEPS + 1) + 4

@@ -19,6 +19,7 @@ const SHARED_SIGMA: Shared = Shared { tone: 2.0, growth_px: 0.15 };
 pub struct Prior {
     /// From the `object` frame to the `camera` frame.
     pub start: Pose,
+    /// Those that pull.
     pub pins: Vec<Pin>,
     pub reach: SnapReach,
 }
@@ -46,7 +47,7 @@ impl Prior {
 
     /// Whether there are pins enough to make a pose of.
     pub fn is_pinned(&self) -> bool {
-        self.pins.iter().filter(|pin| pin.enabled).count() >= PINS_OF_A_POSE
+        self.pins.len() >= PINS_OF_A_POSE
     }
 
     /// Adds what pins want of a pose, for small motions of it about `pivot`, in camera axes.
@@ -56,7 +57,7 @@ impl Prior {
         picture: &Picture,
         (pose, pivot_camera_mm): (&Pose, DVec3),
     ) {
-        for pin in self.pins.iter().filter(|pin| pin.enabled) {
+        for pin in &self.pins {
             let seen = pose.transform_point(pin.point_mm);
             let Some((pixel, jacobian)) = project_with_jacobian(&picture.camera, seen) else { continue };
             let weight = pin.weight * (picture.photo_px / PIN_SIGMA_PX).powi(2);

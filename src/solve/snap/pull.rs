@@ -15,7 +15,7 @@ pub struct Pull {
     pub point: ContourPoint,
     /// How far, counted along the point's normal, in pixels.
     pub offset_px: f64,
-    pub variance_px: f64,
+    pub variance_px2: f64,
     /// How much larger the offset would be at a [tone](Shared::tone) of 1 instead of 0.
     pub tone_px: f64,
 }
@@ -32,7 +32,7 @@ pub fn measurements(
         let seen = pose.transform_point(pull.point.point_mm);
         let (_, [by_x, by_y]) = project_with_jacobian(&picture.camera, seen)?;
         let normal = pull.point.normal;
-        let sigma_px = pull.variance_px.sqrt();
+        let sigma_px = pull.variance_px2.sqrt();
         let row = motion_row(seen - pivot_camera_mm, by_x * normal.x + by_y * normal.y);
         let is_outline = pull.point.kind == EdgeKind::Outline;
         let shared = Shared { tone: -pull.tone_px, growth_px: if is_outline { 1.0 } else { 0.0 } };

@@ -17,7 +17,9 @@ use crate::solve::contour::{ContourModel, ContourPoint, EdgeKind};
 
 /// How far is looked about the start.
 struct Reach {
+    /// In pixels of the photo, and as a part of the object's size: the larger.
     shift_px: f64,
+    shift: f64,
     /// To either side, as a part of the distance, and about the view ray.
     depth: f64,
     roll_rad: f64,
@@ -25,8 +27,9 @@ struct Reach {
     rings_rad: &'static [f64],
 }
 
-const NEAR: Reach = Reach { shift_px: 13.0, depth: 0.04, roll_rad: 0.1, rings_rad: &[0.14] };
-const WIDE: Reach = Reach { shift_px: 26.0, depth: 0.07, roll_rad: 0.25, rings_rad: &[0.23, 0.115] };
+const NEAR: Reach = Reach { shift_px: 13.0, shift: 0.1, depth: 0.04, roll_rad: 0.1, rings_rad: &[0.14] };
+const WIDE: Reach =
+    Reach { shift_px: 26.0, shift: 0.2, depth: 0.07, roll_rad: 0.25, rings_rad: &[0.23, 0.115] };
 /// Views of a near and of a wide ring.
 const VIEWS_PER_RING: [usize; 2] = [4, 8];
 /// Pins say where the object is: then no farther than this is looked. What clicks leave open most is the depth.
@@ -93,6 +96,11 @@ impl Search {
     }
 }
 
+/// How far is looked along the view ray, as a part of the distance.
+pub fn depth_reach(reach: SnapReach) -> f64 {
+    of(reach).depth
+}
+
 fn of(reach: SnapReach) -> &'static Reach {
     match reach {
         SnapReach::Near => &NEAR,
@@ -118,8 +126,11 @@ fn best_place(sight: &Sight, model: &ContourModel, prior: &Prior, turn: DVec3) -
         .flat_map(|roll| sides.map(|scale| (reach.roll_rad * roll, 1.0 + depth * scale)))
         .map(|(roll_rad, factor)| Outline::new(picture, &points, middle, roll_rad, factor))
         .collect();
-    let has_pins = prior.pins.iter().filter(|pin| pin.enabled).count() > 1;
-    let shift_px = if has_pins { SHIFT_WITH_PINS_PX } else { reach.shift_px } / picture.photo_px;
+    let shift_px = if prior.pins.len() > 1 {
+        SHIFT_WITH_PINS_PX / picture.photo_px
+    } else {
+        (reach.shift_px / picture.photo_px).max(reach.shift * look.size_px)
+    };
     let (rating, outline, [right, down]) = best_of(picture, &outlines, shift_px)?;
     let pixel = middle + DVec2::new(f64::from(right), f64::from(down));
     let place = picture.camera.unproject(pixel) * (center.z / outline.factor);

@@ -2,7 +2,8 @@
 
 use super::look::object_rect;
 use super::picture::Picture;
-use super::{SnapHints, SnapOptions};
+use super::search::depth_reach;
+use super::{SnapHints, SnapOptions, SnapReach};
 use crate::math::{Intrinsics, Pose};
 use crate::photo::Pixels;
 use crate::raster::PixelRegion;
@@ -37,7 +38,7 @@ impl Sight {
         let mut occluders = Occluders::draw(&picture.camera, &others, region);
         let is_fitting = |depth: &&DepthInMm| (depth.width, depth.height) == (photo.width, photo.height);
         if let Some(depth) = hints.depth.as_deref().filter(is_fitting) {
-            let before_mm = nearest_mm(model, start);
+            let before_mm = nearest_mm(model, start, options.reach);
             occluders.add_measured(region, before_mm, |x, y| picture.measured_mm(depth, x, y));
         }
         Some(Self { picture, occluders })
@@ -45,10 +46,10 @@ impl Sight {
 }
 
 /// What is nearer to the camera than this is not the object, though it be as far off as a start may be.
-fn nearest_mm(model: &ContourModel, camera_from_object: &Pose) -> f64 {
+fn nearest_mm(model: &ContourModel, camera_from_object: &Pose, reach: SnapReach) -> f64 {
     /// Of the object's radius: a tenth of its size.
     const START_ERROR: f64 = 0.2;
     let radius_mm = model.mesh().sphere().radius;
     let center = camera_from_object.transform_point(model.center_mm());
-    center.z - (1.0 + START_ERROR) * radius_mm
+    center.z - radius_mm - f64::max(START_ERROR * radius_mm, depth_reach(reach) * center.z)
 }

@@ -134,7 +134,6 @@ fn slices_and_one_go_end_alike_and_pins_pull() {
     assert!(error_mm < 1.5, "{error_mm}");
 }
 
-/// All of a photo, as if the object filled it.
 #[test]
 fn clicks_that_are_off_do_not_count_twice() {
     // Four clicks that agree on a seventh more of depth: some seven pixels off, three times what clicks usually are.
@@ -151,6 +150,7 @@ fn clicks_that_are_off_do_not_count_twice() {
     assert!(error_mm < 4.0, "{error_mm}");
 }
 
+/// All of a photo, as if the object filled it.
 fn whole_picture(photo: &Pixels, mask: Option<&Mask>) -> Picture {
     let camera = Intrinsics::from_focal(200.0, photo.width, photo.height);
     let rect = ImageRect::of_photo(photo.width, photo.height);

@@ -50,9 +50,8 @@ pub fn draw(ui: &mut Ui, session: &Session, tolerances: &mut Tolerances, form: &
         numbers(ui, &sureness);
         tolerance_fields(ui, tolerances);
         if let Some(weakest) = sureness.weakest {
-            let button = ui.button(format!("Show ± 2σ of the {}", name_of(weakest.kind)));
-            let tooltip =
-                "The direction in which the pose is least sure: it sways for two seconds, on the screen only";
+            let button = ui.button(format!("Show how far the {} may be off", name_of(weakest.kind)));
+            let tooltip = "The direction in which the pose is least sure: it sways by two standard deviations, on the screen only";
             if button.on_hover_text(tooltip).clicked() {
                 form.asked_sway = Some(weakest);
             }
@@ -61,7 +60,7 @@ pub fn draw(ui: &mut Ui, session: &Session, tolerances: &mut Tolerances, form: &
         if sureness.by_tolerances_mm > MOSTLY * sureness.uncertainty.depth_mm {
             note(
                 ui,
-                "Most of it comes of the tolerances: a calibrated camera and a measured mesh help.",
+                "Most of it comes from the two tolerances above: a calibrated camera and a measured mesh help.",
                 false,
             );
         } else if let Some(pin) = sureness.helpful_pin {
