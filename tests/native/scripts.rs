@@ -428,6 +428,24 @@ fn a_snap_is_a_step_and_esc_takes_it_back_until_something_else_is_done() {
 }
 
 #[test]
+fn what_nobody_has_placed_is_before_nothing() {
+    let mut session = small_session();
+    drop_files(&mut session, &[box_mesh("other.obj")], None);
+    let scene = session.scene();
+    let (photo, first, other) = (scene.photos[0].id, scene.objects[0].id, scene.objects[1].id);
+    assert!(scene.annotation(photo, other).is_some(), "it waits where it came in");
+    assert_eq!(scene.placed_beside(photo, first).count(), 0);
+    let camera_from_object = Pose::from_translation(DVec3::new(0.0, 0.0, 500.0));
+    run(
+        &mut session,
+        Command::SetPose { photo, object: other, camera_from_object, source: PoseSource::Manual },
+    );
+    let beside: Vec<_> = session.scene().placed_beside(photo, first).map(|(object, _)| object.id).collect();
+    assert_eq!(beside, [other]);
+    assert_eq!(session.scene().placed_beside(photo, other).count(), 0);
+}
+
+#[test]
 fn a_pin_of_two_halves_moves_the_object_there() {
     let mut session = small_session();
     let (photo, object, _) = session.selected_annotation().unwrap();

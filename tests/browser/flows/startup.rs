@@ -61,7 +61,8 @@ pub fn example(context: &mut Context) -> anyhow::Result<()> {
 }
 
 /// What is shipped names no folder of the machine that built it.
-pub fn no_folders(_: &mut Context) -> anyhow::Result<()> {
+pub fn no_folders(context: &mut Context) -> anyhow::Result<()> {
+    context.start("")?;
     let home = std::env::home_dir().context("There is no home folder to look for")?;
     let home = home.into_os_string().into_encoded_bytes();
     let modules = std::fs::read_dir(dist_folder())?.filter_map(|entry| Some(entry.ok()?.path()));
