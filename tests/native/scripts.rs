@@ -430,7 +430,8 @@ fn a_snap_is_a_step_and_esc_takes_it_back_until_something_else_is_done() {
 #[test]
 fn what_nobody_has_placed_is_before_nothing() {
     let mut session = small_session();
-    drop_files(&mut session, &[box_mesh("other.obj")], None);
+    let other = "v 0 0 0\nv 90 0 0\nv 0 90 0\nv 0 0 90\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    drop_files(&mut session, &[text_file("other.obj", other)], None);
     let scene = session.scene();
     let (photo, first, other) = (scene.photos[0].id, scene.objects[0].id, scene.objects[1].id);
     assert!(scene.annotation(photo, other).is_some(), "it waits where it came in");
