@@ -14,9 +14,10 @@ use crate::platform::{
     self, Remains, Saved, SceneHeading, SceneId, SceneSummary, Storage, StorageFuture, StorageUse,
 };
 use crate::session::{Command, Notice, Session};
-use crate::ui::{Offer, Saving, SceneRequest};
+use crate::ui::{Offer, SceneRequest};
 
 mod damaged;
+mod leaving;
 
 /// Scenes and what is being done with them.
 pub struct Scenes {
@@ -310,42 +311,6 @@ impl PinPose {
         let id = self.autosave.id();
         let claiming = self.scenes.storage.claim(&id);
         self.scenes.when_done(claiming, move |is_ours| Arrived::Claimed(id, is_ours), Arrived::Problem);
-    }
-
-    fn after_saving(&mut self, next: Next) {
-        // What is done of a batch belongs to the scene that is left.
-        self.cancel_snap();
-        self.scenes.next = Some(next);
-        self.go_on();
-    }
-
-    /// Does what waits for the open scene to be saved, if it is.
-    fn go_on(&mut self) {
-        if self.scenes.next.is_none() || self.scenes.opening.is_some() || self.autosave.is_saving() {
-            return;
-        }
-        // Deleting another scene may be what makes room for this one.
-        let is_deleting = matches!(self.scenes.next, Some(Next::Delete(_)));
-        if !is_deleting && !self.autosave.is_saved() {
-            if matches!(self.autosave.state(&self.session), Saving::Failed(_)) {
-                self.scenes.next = None;
-                let text = "This scene cannot be saved, so it stays open. Download the workspace to keep it";
-                self.notify_with_offer(Notice::error(text), Offer::Workspace);
-                return;
-            }
-            self.autosave.save_now(&self.session, platform::now_ms());
-            if self.autosave.is_saving() || !self.autosave.is_saved() {
-                return;
-            }
-        }
-        match self.scenes.next.take() {
-            Some(Next::Open(id)) => self.begin_opening(id),
-            Some(Next::New) => self.begin_new(),
-            Some(Next::SaveAs(name)) => self.begin_copy(name),
-            Some(Next::Duplicate(id)) => self.duplicate_stored(&id),
-            Some(Next::Delete(id)) => self.delete_stored(&id),
-            None => {}
-        }
     }
 
     fn begin_opening(&mut self, id: SceneId) {

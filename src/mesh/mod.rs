@@ -166,6 +166,19 @@ impl Mesh {
         self.sphere
     }
 
+    /// Whether triangles turn the other way round than they should, seen from outside: many a program does not care. Of a
+    /// sheet, which encloses nothing, it cannot be told.
+    pub fn is_inside_out(&self) -> bool {
+        const SMALLEST_PART: f64 = 1e-3;
+        let (center, size) = (self.bounds().center(), self.bounds().size());
+        let volume = |&triangle: &[u32; 3]| {
+            let [a, b, c] = self.corners(triangle).map(|corner| corner - center);
+            a.dot(b.cross(c)) / 6.0
+        };
+        let enclosed: f64 = self.triangles().iter().map(volume).sum();
+        enclosed < -SMALLEST_PART * size.x * size.y * size.z
+    }
+
     /// How many vertices no triangle names.
     pub fn unreferenced_vertices(&self) -> usize {
         self.unreferenced_vertices

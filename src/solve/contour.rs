@@ -163,7 +163,7 @@ impl ContourModel {
     /// `None` for a mesh without a single proper triangle.
     pub fn new(mesh: &Mesh) -> Option<Self> {
         let mesh = simplified(mesh, MAX_TRIANGLES)?;
-        let outward = if is_inside_out(&mesh) { -1.0 } else { 1.0 };
+        let outward = if mesh.is_inside_out() { -1.0 } else { 1.0 };
         let normals: Vec<DVec3> = mesh
             .triangles()
             .iter()
@@ -320,19 +320,6 @@ struct Seen<'a> {
     view: &'a DepthView,
     faces_eye: [bool; 2],
     is_silhouette: bool,
-}
-
-/// Whether triangles turn the other way round than they should, seen from outside: many a program does not care. Of a sheet,
-/// which encloses nothing, it cannot be told.
-fn is_inside_out(mesh: &Mesh) -> bool {
-    const SMALLEST_PART: f64 = 1e-3;
-    let (bounds, size) = (mesh.bounds(), mesh.bounds().size());
-    let volume = |&triangle: &[u32; 3]| {
-        let [a, b, c] = mesh.corners(triangle).map(|corner| corner - bounds.center());
-        a.dot(b.cross(c)) / 6.0
-    };
-    let enclosed: f64 = mesh.triangles().iter().map(volume).sum();
-    enclosed < -SMALLEST_PART * size.x * size.y * size.z
 }
 
 fn edges(mesh: &Mesh, normals: &[DVec3]) -> Vec<Edge> {
