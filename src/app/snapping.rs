@@ -120,9 +120,20 @@ impl PinPose {
             self.snapping.meshes.push((sha256, mesh));
         }
         // What ends now would end what the hand is doing.
-        if self.session.gesture_under_way() {
-            return;
+        if !self.session.gesture_under_way() {
+            self.go_on_snapping();
         }
+        let now_s = self.ctx.input(|input| input.time);
+        if let Some(animation) = &self.snapping.animation {
+            if now_s - animation.began_s < ANIMATION_S {
+                self.ctx.request_repaint();
+            } else {
+                self.snapping.animation = None;
+            }
+        }
+    }
+
+    fn go_on_snapping(&mut self) {
         if self.snapping.asked.is_none() && self.snapping.running.is_none() {
             self.go_on_with_batch();
         }
@@ -136,14 +147,6 @@ impl PinPose {
                 Progress::Done(outcome) => self.finish_snap(asked, &outcome),
             }
             self.ctx.request_repaint();
-        }
-        let now_s = self.ctx.input(|input| input.time);
-        if let Some(animation) = &self.snapping.animation {
-            if now_s - animation.began_s < ANIMATION_S {
-                self.ctx.request_repaint();
-            } else {
-                self.snapping.animation = None;
-            }
         }
     }
 
