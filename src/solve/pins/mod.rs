@@ -48,12 +48,14 @@ pub enum PinError {
     NoPose,
 }
 
-/// Those of the pins that count and that the others do not contradict.
-pub fn explained(camera: &Intrinsics, pins: &[Pin], start: &Pose) -> Vec<Pin> {
+/// Those of the pins that count and that the others do not contradict, and how far their own pose leaves them off, in pixels
+/// (root mean square).
+pub fn explained(camera: &Intrinsics, pins: &[Pin], start: &Pose) -> (Vec<Pin>, f64) {
     let solution = solve_pins(camera, pins, Some(start), &PinOptions::default());
-    let misclicks = solution.map_or_else(|_| Vec::new(), |solution| solution.misclicks);
+    let (misclicks, rms_px) =
+        solution.map_or_else(|_| (Vec::new(), 0.0), |solution| (solution.misclicks, solution.rms_px));
     let is_explained = |(number, pin): &(usize, &Pin)| pin.counts() && !misclicks.contains(number);
-    pins.iter().enumerate().filter(is_explained).map(|(_, pin)| *pin).collect()
+    (pins.iter().enumerate().filter(is_explained).map(|(_, pin)| *pin).collect(), rms_px)
 }
 
 /// Farther from the origin than this nothing is: the limit of a mesh's coordinates, and beyond any photo.

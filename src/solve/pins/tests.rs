@@ -309,9 +309,11 @@ fn what_is_switched_off_or_a_misclick_does_not_pull() {
     let mut pins = clicked(&mut chance, 8, &pose, &camera(), 0.5);
     pins[2].pixel += DVec2::new(50.0, -40.0);
     pins[5].enabled = false;
-    let left = explained(&camera(), &pins, &pose);
+    let (left, rms_px) = explained(&camera(), &pins, &pose);
     let expected: Vec<Pin> = [0, 1, 3, 4, 6, 7].map(|number| pins[number]).to_vec();
     assert_eq!(left, expected);
+    // Half a pixel of noise along each axis; six of twelve numbers go into the pose.
+    assert!(rms_px > 0.1 && rms_px < 1.0, "{rms_px}");
 }
 
 #[test]

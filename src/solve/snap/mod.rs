@@ -29,7 +29,7 @@ use super::TwistCovariance;
 use super::contour::ContourModel;
 use super::linear::{Matrix, inverse};
 use super::motion::step_between;
-use super::pins::{self, Pin};
+use super::pins::Pin;
 use crate::math::{Intrinsics, Pose};
 use crate::photo::Pixels;
 use crate::raster::Mask;
@@ -85,6 +85,8 @@ pub enum SnapVerdict {
     NoContrast,
     /// What was found is too far from the start to be trusted; the start is returned.
     TooFar,
+    /// Nothing that can be trusted was found, and the pins disagree by too much to start from them; the start is returned.
+    PinsDisagree,
 }
 
 impl fmt::Display for SnapVerdict {
@@ -95,6 +97,9 @@ impl fmt::Display for SnapVerdict {
             Self::OutOfView => "Too little of the object is in the photo to snap to.",
             Self::NoContrast => "The photo shows too little of the outline here to be sure of a better pose.",
             Self::TooFar => "The photo pulls the object far away from here; that is not to be trusted. Place it more closely.",
+            Self::PinsDisagree => {
+                "The pins contradict each other by too many pixels to snap from here. Correct them, or add more: from five on, a misclick is found."
+            }
         })
     }
 }
@@ -190,10 +195,9 @@ impl Snap {
         let sights = Sight::new(&given, LARGEST_OBJECT_PX)
             .zip(Sight::new(&given, LARGEST_SEARCHED_PX))
             .map(|(fine, small)| Arc::new(Sights { fine, small }));
-        let pins = pins::explained(camera, &hints.pins, start);
         Self {
             model,
-            prior: Prior { start: *start, pins, reach: options.reach },
+            prior: Prior::new(camera, start, &hints.pins, options.reach),
             sights,
             score_before: None,
             search: Search::new(options.reach),
@@ -304,10 +308,15 @@ impl Snap {
         let turned_rad = start.angle_to(&best.pose);
         let place = |pose: &Pose| pose.transform_point(self.model.center_mm());
         let moved_mm = place(start).distance(place(&best.pose));
-        if turned_rad > LARGEST_TURN_RAD || moved_mm > LARGEST_MOVE * place(start).length() {
+        let is_far = turned_rad > LARGEST_TURN_RAD || moved_mm > LARGEST_MOVE * place(start).length();
+        let is_poor = best.score < SMALLEST_SCORE;
+        if (is_far || is_poor) && self.prior.pins_disagree() {
+            return self.refused(SnapVerdict::PinsDisagree);
+        }
+        if is_far {
             return self.refused(SnapVerdict::TooFar);
         }
-        if best.score < SMALLEST_SCORE {
+        if is_poor {
             return self.refused(SnapVerdict::NoContrast);
         }
         if best.score < before + SMALLEST_GAIN {

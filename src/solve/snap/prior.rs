@@ -5,13 +5,17 @@ use glam::DVec3;
 use super::SnapReach;
 use super::measurements::{Equations, Shared, row_of};
 use super::picture::Picture;
-use crate::math::Pose;
+use crate::math::{Intrinsics, Pose};
 use crate::solve::motion::{motion_row, project_with_jacobian, step_between};
-use crate::solve::pins::Pin;
+use crate::solve::pins::{self, Pin};
 
-/// Noise of a click: what a pin pulls with.
+/// Noise of a careful click: what a pin pulls with, unless pins leave each other farther off.
 const PIN_SIGMA_PX: f64 = 2.0;
 const PINS_OF_A_POSE: usize = 4;
+/// How many residuals of careful clicks stand beside the pins' own: four pins leave two, which say little.
+const CAREFUL_RESIDUALS: f64 = 4.0;
+/// Beyond this the pins are not of one pose.
+const LARGEST_PIN_SIGMA_PX: f64 = 1.5 * PIN_SIGMA_PX;
 /// How far cameras' curves are from the usual one, and outlines from where meshes have them: one standard deviation.
 const SHARED_SIGMA: Shared = Shared { tone: 2.0, growth_px: 0.15 };
 
@@ -21,6 +25,8 @@ pub struct Prior {
     pub start: Pose,
     /// Those that pull.
     pub pins: Vec<Pin>,
+    /// How far a click is off, one standard deviation along each axis of the photo.
+    pub pin_sigma_px: f64,
     pub reach: SnapReach,
 }
 
@@ -35,6 +41,18 @@ struct Spread {
 }
 
 impl Prior {
+    pub fn new(camera: &Intrinsics, start: &Pose, pins: &[Pin], reach: SnapReach) -> Self {
+        let (pins, rms_px) = pins::explained(camera, pins, start);
+        let mut prior = Self { start: *start, pins, pin_sigma_px: PIN_SIGMA_PX, reach };
+        if prior.is_pinned() {
+            let count = prior.pins.len() as f64;
+            let surplus = 2.0 * count - 6.0;
+            let squares = count * rms_px * rms_px + CAREFUL_RESIDUALS * PIN_SIGMA_PX * PIN_SIGMA_PX;
+            prior.pin_sigma_px = (squares / (surplus + CAREFUL_RESIDUALS)).sqrt().max(PIN_SIGMA_PX);
+        }
+        prior
+    }
+
     fn spread(&self) -> Spread {
         let Spread { turn_rad, depth, shift_px } = match self.reach {
             SnapReach::Near => Spread { turn_rad: 5_f64.to_radians(), depth: 0.04, shift_px: 10.0 },
@@ -50,6 +68,11 @@ impl Prior {
         self.pins.len() >= PINS_OF_A_POSE
     }
 
+    /// Whether the pins want poses too different for their own to be near the truth.
+    pub fn pins_disagree(&self) -> bool {
+        self.pin_sigma_px > LARGEST_PIN_SIGMA_PX
+    }
+
     /// Adds what pins want of a pose, for small motions of it about `pivot`, in camera axes.
     pub fn add_pins(
         &self,
@@ -60,7 +83,7 @@ impl Prior {
         for pin in &self.pins {
             let seen = pose.transform_point(pin.point_mm);
             let Some((pixel, jacobian)) = project_with_jacobian(&picture.camera, seen) else { continue };
-            let weight = pin.weight * (picture.photo_px / PIN_SIGMA_PX).powi(2);
+            let weight = pin.weight * (picture.photo_px / self.pin_sigma_px).powi(2);
             let residual = pixel - picture.place_of(pin.pixel);
             for (gradient, residual) in jacobian.into_iter().zip(residual.to_array()) {
                 let row = row_of(&motion_row(seen - pivot_camera_mm, gradient), Shared::default());

@@ -32,8 +32,8 @@ const WIDE: Reach =
     Reach { shift_px: 26.0, shift: 0.2, depth: 0.07, roll_rad: 0.25, rings_rad: &[0.23, 0.115] };
 /// Views of a near and of a wide ring.
 const VIEWS_PER_RING: [usize; 2] = [4, 8];
-/// Pins say where the object is: then no farther than this is looked. What clicks leave open most is the depth.
-const SHIFT_WITH_PINS_PX: f64 = 4.0;
+/// Pins say where the object is: then no farther than what their clicks leave open is looked. That is most of all the depth.
+const SHIFT_IN_PIN_SIGMAS: f64 = 2.0;
 const DEPTH_WITH_PINS: f64 = 2.0;
 /// Between tried places, in pixels of the small copy: an edge is two of them wide there.
 const STEP_PX: i32 = 2;
@@ -127,7 +127,7 @@ fn best_place(sight: &Sight, model: &ContourModel, prior: &Prior, turn: DVec3) -
         .map(|(roll_rad, factor)| Outline::new(picture, &points, middle, roll_rad, factor))
         .collect();
     let shift_px = if prior.pins.len() > 1 {
-        SHIFT_WITH_PINS_PX / picture.photo_px
+        SHIFT_IN_PIN_SIGMAS * prior.pin_sigma_px / picture.photo_px
     } else {
         (reach.shift_px / picture.photo_px).max(reach.shift * look.size_px)
     };

@@ -1,5 +1,6 @@
 use glam::{DAffine3, DVec2, DVec3};
 
+use super::super::pins;
 use super::super::test_chance::Chance;
 use super::colors::{Band, ColorModel};
 use super::picture::Picture;
@@ -148,6 +149,44 @@ fn clicks_that_are_off_do_not_count_twice() {
     let error_mm = corner_error_mm(&outcome.camera_from_object, &truth());
     // Of the start's 84 mm, the clicks' own pull leaves 2.2. (The start once pulled as well, and left 32.)
     assert!(error_mm < 4.0, "{error_mm}");
+}
+
+/// Four pins on the truth, clicked `off_px` beside it in directions that no pose explains all of; and the pose of those pins.
+fn contradicting_pins(off_px: f64) -> (SnapHints, Pose) {
+    let corners = model().mesh().bounds().corners();
+    let asides = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_X];
+    let pins = [0, 3, 5, 6].into_iter().zip(asides).map(|(corner, aside)| {
+        let pixel = camera().project(truth().transform_point(corners[corner])).unwrap();
+        Pin::new(corners[corner], pixel + off_px * aside)
+    });
+    let pins: Vec<Pin> = pins.collect();
+    let solution = pins::solve_pins(&camera(), &pins, Some(&truth()), &pins::PinOptions::default()).unwrap();
+    (SnapHints { pins, ..SnapHints::default() }, solution.camera_from_object)
+}
+
+#[test]
+fn pins_that_contradict_each_other_pull_less() {
+    let sigma_px = |off_px: f64, count: usize| {
+        let (hints, start) = contradicting_pins(off_px);
+        Prior::new(&camera(), &start, &hints.pins[..count], SnapReach::Near).pin_sigma_px
+    };
+    let usual = sigma_px(0.5, 4);
+    // Residuals of 4.9 px, with two more numbers than a pose has, would say 7 px; careful clicks beside them make that 4.3.
+    let careless = sigma_px(6.0, 4);
+    assert!((careless / usual - 2.16).abs() < 0.02, "{careless} {usual}");
+    // Three are always of one pose: nothing is known of them.
+    assert_eq!(sigma_px(6.0, 3), usual);
+}
+
+#[test]
+fn a_refusal_says_that_it_is_the_pins() {
+    let nothing = photo(&truth(), 0.0);
+    for (off_px, is_theirs) in [(6.0, true), (0.5, false)] {
+        let (hints, start) = contradicting_pins(off_px);
+        let outcome = Snap::new(&nothing, &camera(), model(), &start, hints).run();
+        assert_eq!(outcome.verdict == SnapVerdict::PinsDisagree, is_theirs, "{outcome:?}");
+        assert_eq!(outcome.camera_from_object, start);
+    }
 }
 
 /// All of a photo, as if the object filled it.
