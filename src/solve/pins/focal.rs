@@ -1,11 +1,13 @@
 //! The focal length together with the pose, from six pins or more.
 
+use glam::DVec2;
 use thiserror::Error;
 
 use super::super::least_squares::{Limits, NormalEquations, levenberg_marquardt};
 use super::super::linear::inverse;
 use super::super::motion::{motion_row, moved_about, project_with_jacobian};
-use super::refine::{Fitting, Kernel, middle};
+use super::misclicks::misclicks;
+use super::refine::{Fitting, Kernel, middle, residual};
 use super::spread::Spread;
 use super::sqpnp::{Sighting, sqpnp};
 use super::{Pin, PinError, PinOptions, checked};
@@ -41,17 +43,21 @@ pub enum FocalError {
 const FEWEST_PINS: usize = 6;
 /// Focal lengths that are tried first, as parts of the longer side of the photo: from fisheye to long telephoto lenses.
 const FIRST_GUESSES: [f64; 8] = [0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0];
+/// Beyond this many standard deviations of a click, misclicks are looked for, among so many of the worst pins.
+const DOUBTFUL_SIGMAS: f64 = 3.0;
+const MOST_SUSPECTS: usize = 12;
 /// A standard deviation beyond this is no measurement.
 const LARGEST_SIGMA: f64 = 0.35;
 
-/// Solves for the pose and one factor on fx and fy; principal point, aspect and distortion are taken as given.
+/// Solves for the pose and one factor on fx and fy; principal point, aspect and distortion are taken as given. Misclicks are
+/// left out where six pins remain.
 pub fn solve_focal(
     camera: &Intrinsics,
     pins: &[Pin],
     options: &PinOptions,
 ) -> Result<FocalSolution, FocalError> {
     checked(pins)?;
-    let used: Vec<Pin> = pins.iter().filter(|pin| pin.counts()).copied().collect();
+    let mut used: Vec<Pin> = pins.iter().filter(|pin| pin.counts()).copied().collect();
     if used.len() < FEWEST_PINS {
         return Err(FocalError::TooFew { pins: used.len() });
     }
@@ -59,12 +65,15 @@ pub fn solve_focal(
     if Spread::of(&points).is_none_or(|spread| spread.is_planar() || spread.is_collinear()) {
         return Err(FocalError::Planar);
     }
-    let longer_side = f64::from(camera.width.max(camera.height));
-    let best = FIRST_GUESSES
-        .iter()
-        .filter_map(|guess| refined(camera, &used, guess * longer_side / camera.focal_px(), options))
-        .min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-    let (state, equations) = best.ok_or(PinError::NoPose)?;
+    let mut best = best_fit(camera, &used, options).ok_or(PinError::NoPose)?;
+    let wrong = wrong_pins(camera, &used, &best.0, options);
+    let left: Vec<Pin> = without(&used, |number| wrong.contains(&number));
+    // Of fewer it cannot be told whether it was a misclick.
+    if !wrong.is_empty() && left.len() >= FEWEST_PINS {
+        best = best_fit(camera, &left, options).ok_or(PinError::NoPose)?;
+        used = left;
+    }
+    let (state, equations) = best;
     let surplus = 2.0 * used.len() as f64 - 7.0;
     // As many clicks' worth of experience as `solution` counts.
     let variance = (equations.cost + 4.0 * options.click_sigma_px.powi(2)) / (surplus + 4.0);
@@ -79,6 +88,37 @@ pub fn solve_focal(
         rms_px: (equations.cost / used.len() as f64).sqrt(),
         relative_sigma,
     })
+}
+
+fn without(pins: &[Pin], is_left_out: impl Fn(usize) -> bool) -> Vec<Pin> {
+    pins.iter().enumerate().filter(|(number, _)| !is_left_out(*number)).map(|(_, pin)| *pin).collect()
+}
+
+fn best_fit(given: &Intrinsics, pins: &[Pin], options: &PinOptions) -> Option<(State, NormalEquations<7>)> {
+    let longer_side = f64::from(given.width.max(given.height));
+    FIRST_GUESSES
+        .iter()
+        .filter_map(|guess| refined(given, pins, guess * longer_side / given.focal_px(), options))
+        .min_by(|a, b| a.1.cost.total_cmp(&b.1.cost))
+}
+
+/// Misclicks, by the camera that fits best when one of the worst pins is left out: a single one can bend a focal length far
+/// enough for all others to look wrong.
+fn wrong_pins(given: &Intrinsics, pins: &[Pin], fit: &State, options: &PinOptions) -> Vec<usize> {
+    let camera = fit.camera(given);
+    let off_px = |pin: &Pin| residual(&camera, &fit.pose, pin).map_or(f64::INFINITY, DVec2::length);
+    let mut worst: Vec<(f64, usize)> =
+        pins.iter().enumerate().map(|(number, pin)| (off_px(pin), number)).collect();
+    worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+    if worst.first().is_none_or(|(off_px, _)| *off_px < DOUBTFUL_SIGMAS * options.click_sigma_px) {
+        return Vec::new();
+    }
+    let fits = worst
+        .into_iter()
+        .take(MOST_SUSPECTS)
+        .filter_map(|(_, suspect)| best_fit(given, &without(pins, |number| number == suspect), options));
+    let best = fits.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    best.map_or_else(Vec::new, |(state, _)| misclicks(&state.camera(given), pins, options))
 }
 
 /// A pose and the logarithm of the factor on the focal length: a factor stays positive.

@@ -209,6 +209,22 @@ fn focal_length_and_pose_come_from_pins_together() {
     assert_eq!(solve_focal(&truth, &flat, &options()), Err(FocalError::Planar));
 }
 
+#[test]
+fn a_misclick_is_no_part_of_a_focal_length() {
+    let mut chance = Chance(15);
+    let truth = Intrinsics::from_focal(900.0, 640, 480);
+    for round in 0..20 {
+        let pose = chance.pose(500.0);
+        let mut pins = clicked(&mut chance, 9, &pose, &truth, 0.5);
+        let clean = solve_focal(&camera_of(520.0), &[&pins[..4], &pins[5..]].concat(), &options()).unwrap();
+        pins[4].pixel += DVec2::new(70.0, -40.0);
+        let found = solve_focal(&camera_of(520.0), &pins, &options()).unwrap();
+        // The same eight pins: what is left is where the iterations end.
+        let ratio = found.camera.fx / clean.camera.fx;
+        assert!((ratio - 1.0).abs() < 1e-3, "{round}: {ratio}");
+    }
+}
+
 fn camera_of(focal_px: f64) -> Intrinsics {
     Intrinsics::from_focal(focal_px, 640, 480)
 }
