@@ -147,6 +147,9 @@ impl PinPose {
         }
         if matches!(command, Command::CancelGesture | Command::Run(crate::session::CommandId::Cancel)) {
             self.hands.cancel();
+            if self.stop_snap_first() {
+                return Ok(());
+            }
         }
         let effects = self.session.apply(command, platform::now_ms()).map_err(|error| error.to_string())?;
         effects.into_iter().for_each(|effect| self.carry_out(effect));

@@ -6,7 +6,8 @@ use super::PinPose;
 use crate::photo::Pixels;
 use crate::scene::Sha256;
 
-/// All decoded photos together, but for the one that is shown, which is kept however large it is.
+/// All decoded photos together, but for the one that is shown and the one that has just come, which are kept however large
+/// they are.
 const MOST_BYTES: usize = 256 << 20;
 
 #[derive(Debug, Default)]
@@ -51,8 +52,11 @@ impl PhotoCache {
         let mut bytes: usize = self.kept.iter().map(|(_, pixels)| pixels.rgba.len()).sum();
         while bytes > MOST_BYTES {
             let is_free = |(kept, _): &(Sha256, Arc<Pixels>)| Some(*kept) != self.shown;
-            let Some(oldest) = self.kept.iter().rposition(is_free) else { break };
-            bytes -= self.kept.remove(oldest).1.rgba.len();
+            match self.kept.iter().rposition(is_free) {
+                Some(oldest) if oldest > 0 => bytes -= self.kept.remove(oldest).1.rgba.len(),
+                // Whoever sent for it has to see it once.
+                _ => break,
+            }
         }
     }
 }
@@ -109,5 +113,11 @@ mod tests {
         cache.show(large);
         cache.insert(large, pixels);
         assert!(cache.get(large).is_some(), "however large");
+        let (next, pixels) = photo(10, 300);
+        cache.insert(next, pixels);
+        assert!(cache.get(next).is_some() && cache.get(large).is_some(), "beside the shown one");
+        let (after, pixels) = photo(11, 1);
+        cache.insert(after, pixels);
+        assert!(cache.get(next).is_none() && cache.get(after).is_some(), "until another comes");
     }
 }

@@ -37,6 +37,8 @@ pub struct Snapping {
     batch: Option<Batch>,
     /// A photo or mask that was sent for.
     wanted_picture: Option<Sha256>,
+    /// Photo and mask that have come: the cache may not have room for both until the other is there.
+    held: Vec<(Sha256, Arc<Pixels>)>,
     animation: Option<Animation>,
 }
 
@@ -80,6 +82,7 @@ impl Snapping {
     /// Stops what is under way; false if nothing is.
     pub fn cancel(&mut self) -> bool {
         self.wanted_picture = None;
+        self.held.clear();
         self.asked.take().is_some() | self.running.take().is_some() | self.batch.take().is_some()
     }
 
@@ -93,6 +96,12 @@ impl Snapping {
 }
 
 impl PinPose {
+    /// What the solver does is stopped before what the hand has done is taken back, but for what it is just doing.
+    pub(super) fn stop_snap_first(&mut self) -> bool {
+        let is_hand_at_work = self.session.gesture_under_way() || self.session.half_pin().is_some();
+        !is_hand_at_work && self.cancel_snap()
+    }
+
     pub(super) fn start_snap(&mut self, photo: PhotoId, object: ObjectId, reach: SnapReach) {
         self.cancel_snap();
         self.snapping.asked = self.asked_of(photo, object, reach);
@@ -157,6 +166,7 @@ impl PinPose {
         let Some(photo) = scene.photo(asked.photo).filter(|_| is_there).map(|photo| photo.asset.clone())
         else {
             self.snapping.asked = None;
+            self.snapping.held.clear();
             return;
         };
         let mask = scene.masks_of(asked.photo).find(|mask| mask.object == Some(asked.object));
@@ -174,6 +184,7 @@ impl PinPose {
             return;
         }
         (self.snapping.asked, self.snapping.wanted_picture) = (None, None);
+        self.snapping.held.clear();
         match pixels {
             Some(pixels) => self.begin_snap(asked, &pixels, mask.as_deref()),
             None => self.leave_out("The photo cannot be decoded"),
@@ -206,9 +217,13 @@ impl PinPose {
 
     /// A photo's or a mask's pixels; `None` while they are on their way, `Some(None)` where they do not come.
     fn picture_for_snap(&mut self, asset: &PhotoAsset) -> Option<Option<Arc<Pixels>>> {
-        let known = self.photos.get(asset.sha256);
-        if known.is_some() {
-            return Some(known);
+        let held = self.snapping.held.iter().find(|(held, _)| *held == asset.sha256);
+        if let Some((_, pixels)) = held {
+            return Some(Some(pixels.clone()));
+        }
+        if let Some(pixels) = self.photos.get(asset.sha256) {
+            self.snapping.held.push((asset.sha256, pixels.clone()));
+            return Some(Some(pixels));
         }
         if self.snapping.wanted_picture != Some(asset.sha256) {
             self.snapping.wanted_picture = Some(asset.sha256);
@@ -270,12 +285,15 @@ impl PinPose {
         if !self.still_stands(&asked) {
             return;
         }
+        let covariance = outcome.covariance.map(Box::new);
         if outcome.verdict != SnapVerdict::Improved {
+            if covariance.is_some() {
+                self.apply(Command::NoteSnap { photo, object, covariance });
+            }
             self.notify(Notice::warning(outcome.verdict.to_string()));
             return;
         }
         let camera_from_object = outcome.camera_from_object;
-        let covariance = outcome.covariance.map(Box::new);
         let taken = self.try_apply(Command::TakeSnap { photo, object, camera_from_object, covariance });
         if let Err(error) = taken {
             self.notify(Notice::warning(error));

@@ -31,8 +31,9 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
     let is_wanted = |photo: &&Photo| options.photos.is_empty() || options.photos.contains(&photo.name);
     let scene = session.scene().clone();
     let photos: Vec<&Photo> = scene.photos.iter().filter(is_wanted).collect();
-    if photos.is_empty() {
-        return Err(Failure::Input(vec!["there is no such photo".to_owned()]));
+    let is_there = |name: &&String| scene.photos.iter().any(|photo| photo.name == **name);
+    if let Some(name) = options.photos.iter().find(|name| !is_there(name)) {
+        return Err(Failure::Input(vec![format!("{name}: there is no such photo")]));
     }
     let models: Vec<(ObjectId, Option<Arc<ContourModel>>)> = scene
         .objects
@@ -53,7 +54,8 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
                 lines.push(left(photo, object, &error.to_string()));
                 continue;
             }
-            let outcome = snap(&scene, &seen, object, annotation, &models)?;
+            // What was snapped already is where it is now.
+            let outcome = snap(session.scene(), &seen, object, annotation, &models)?;
             if let Some(outcome) = &outcome {
                 take(&mut session, photo, object, outcome)?;
             }

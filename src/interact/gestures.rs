@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::gizmo::{Gizmo, GizmoDrag, Handle};
 use super::object_drag::{FINE, ObjectDrag, depth_by_wheel, hit_to_move};
-use super::pin_drag::{PinDrag, half_pin};
+use super::pin_drag::{HalfPinOn, PinDrag, half_pin};
 use super::viewpoint::{GroundDrag, Viewpoint};
 use super::{Button, Eye, PointerAction, PointerEvent, pick_along};
 use crate::math::sort_short;
@@ -180,7 +180,7 @@ impl Gestures {
             }
         }
         if button == Button::Left && session.tool() == Tool::Pin {
-            return self.action_of_pin_tool(event.position, session, view, &eye);
+            return self.action_of_pin_tool(event, session, view, &eye);
         }
         match ObjectDrag::start(session, &eye, event.position, button) {
             Some(drag) => Action::Object(drag),
@@ -188,16 +188,17 @@ impl Gestures {
         }
     }
 
-    /// In the photo view pins are set and dragged, unless a pin waits for its other half; the scene view is a turntable.
+    /// In the photo view pins are set and dragged, unless a pin waits for its other half or Shift asks for one; the scene view
+    /// is a turntable.
     fn action_of_pin_tool(
         &self,
-        position: DVec2,
+        event: &PointerEvent,
         session: &Session,
         view: &impl Viewpoint,
         eye: &Eye,
     ) -> Action {
-        let sets_pins = view.is_photo() && session.half_pin().is_none();
-        let drag = sets_pins.then(|| PinDrag::start(session, eye, position, self.pixels_per_point));
+        let sets_pins = view.is_photo() && session.half_pin().is_none() && !event.modifiers.shift;
+        let drag = sets_pins.then(|| PinDrag::start(session, eye, event.position, self.pixels_per_point));
         drag.flatten().map_or(Action::Ground(view.ground_drag()), Action::Pin)
     }
 
@@ -280,7 +281,14 @@ impl Gestures {
             Action::Pin(drag) if press.is_click => drag.click(session),
             Action::Ground(_) if press.is_click && press.is_of_pin_tool(session) => {
                 let eye = view.eye(session);
-                eye.map_or_else(Vec::new, |eye| half_pin(session, &eye, press.start, view.is_photo()))
+                let on = if !view.is_photo() {
+                    HalfPinOn::Scene
+                } else if event.modifiers.shift {
+                    HalfPinOn::PhotoAlone
+                } else {
+                    HalfPinOn::Photo
+                };
+                eye.map_or_else(Vec::new, |eye| half_pin(session, &eye, press.start, on))
             }
             Action::Ground(_) | Action::Object(_) if press.is_click => {
                 let selects = press.button == Button::Left;

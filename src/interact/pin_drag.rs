@@ -99,17 +99,26 @@ pub fn pin_at(
     (distance(pin) <= GRIP_POINTS * pixels_per_point).then_some((object, number, pin.pixel))
 }
 
+/// Where a half of a pin is clicked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HalfPinOn {
+    /// A place is looked for, and a point of the object if the place is known already.
+    Photo,
+    /// A place, though the object be drawn over it.
+    PhotoAlone,
+    /// A point of the object.
+    Scene,
+}
+
 /// A click with the Pin tool that sets one half of a pin, or the half that is missing.
-///
-/// In the photo a place is looked for, and a point of the object if the place is known already; in the scene view a point.
-pub fn half_pin(session: &Session, eye: &Eye, position: DVec2, is_photo: bool) -> Vec<Command> {
+pub fn half_pin(session: &Session, eye: &Eye, position: DVec2, on: HalfPinOn) -> Vec<Command> {
     let Some(photo) = session.photo().map(|photo| photo.id) else { return Vec::new() };
-    let hit = hit_to_move(session, eye, position);
+    let hit = if on == HalfPinOn::PhotoAlone { None } else { hit_to_move(session, eye, position) };
     let complete = |object: ObjectId, pin: Pin| {
         let select = (session.selected() != Some(object)).then_some(Command::Select(Some(object)));
         select.into_iter().chain([Command::CompletePin { photo, object, pin }]).collect()
     };
-    let pixel = is_photo.then(|| eye.image_from_viewport(position));
+    let pixel = (on != HalfPinOn::Scene).then(|| eye.image_from_viewport(position));
     match (session.half_pin(), pixel, hit) {
         (Some(HalfPin::Point(object, point_mm)), Some(pixel), _) => {
             complete(object, Pin::new(point_mm, pixel))

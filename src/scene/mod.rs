@@ -78,7 +78,23 @@ pub enum CameraOrigin {
 
 impl CameraOrigin {
     pub fn is_guess(&self) -> bool {
-        matches!(self, Self::AssumedFieldOfView | Self::Exif(_) | Self::Pins { .. } | Self::Slider { .. })
+        self.focal_sigma().is_some()
+    }
+
+    /// How far an estimated focal length may be off, as a part of it: one standard deviation. The depth of what is posed with
+    /// it is off by the same part. `None` for one that was measured.
+    pub fn focal_sigma(&self) -> Option<f64> {
+        match self {
+            // Most cameras see between 45° and 80°.
+            Self::AssumedFieldOfView => Some(0.2),
+            // Whole millimetres at 26, and makers who mean the diagonal.
+            Self::Exif(ExifFocalSource::Equivalent) => Some(0.04),
+            // A zoom's stated length, and focus breathing.
+            Self::Exif(ExifFocalSource::FocalPlane | ExifFocalSource::SensorTable) => Some(0.03),
+            Self::Pins { relative_sigma } => Some(*relative_sigma),
+            Self::Slider { .. } => Some(0.1),
+            Self::Typed | Self::File(_) => None,
+        }
     }
 }
 

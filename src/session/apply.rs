@@ -113,6 +113,10 @@ impl Session {
                 self.snapped = self.history.newest().map(|step| ((photo, object), step));
                 Ok(Vec::new())
             }
+            Command::NoteSnap { photo, object, covariance } => {
+                self.note_snap((photo, object), covariance.map(|covariance| *covariance));
+                Ok(Vec::new())
+            }
             Command::TakeSnaps { snaps, summary, least_sure } => {
                 self.take_snaps(snaps, (summary, least_sure), now_ms)
             }
@@ -128,10 +132,10 @@ impl Session {
                 Ok(Vec::new())
             }
             Command::CancelGesture => {
-                self.half_pin = None;
+                let had_half_pin = self.half_pin.take().is_some();
                 if let Some(gesture) = self.gesture.take() {
                     self.restore(gesture.before);
-                } else if self.is_snap_in_view() {
+                } else if !had_half_pin && self.is_snap_in_view() {
                     return Ok(self.undo());
                 }
                 Ok(Vec::new())

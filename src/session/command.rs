@@ -148,7 +148,13 @@ pub enum Command {
         /// How sure the snap is of it.
         covariance: Option<Box<TwistCovariance>>,
     },
-    /// The same for several poses, as one step; those that are locked or confirmed by now stay.
+    /// How sure a snap is of a pose that it found no better one for. Nothing of the scene changes.
+    NoteSnap {
+        photo: PhotoId,
+        object: ObjectId,
+        covariance: Option<Box<TwistCovariance>>,
+    },
+    /// Snaps of several poses, as one step; those that are locked or confirmed by now stay.
     TakeSnaps {
         snaps: Vec<((PhotoId, ObjectId), Pose, Option<TwistCovariance>)>,
         /// For the log, with the pose that is to be looked at first.

@@ -44,9 +44,7 @@ pub use table::{COMMANDS, CommandId, CommandInfo, Menu, Shortcut};
 pub use view::{Arrangement, Panes, Tool};
 
 use crate::formats::{Document, Incoming, Keep, PosesAs, ViewSettings};
-use crate::math::Pose;
 use crate::scene::{Annotation, Look, ObjectId, Photo, PhotoId, Scene};
-use crate::solve::TwistCovariance;
 use history::{Burst, BurstKey, History, Snapshot};
 
 /// Everything that is open.
@@ -66,8 +64,7 @@ pub struct Session {
     snapped: Option<((PhotoId, ObjectId), u64)>,
     pin_report: pins::ReportCache,
     fit_scores: fits::FitScores,
-    /// Of poses that a snap has set, with the pose that it is of.
-    snap_covariances: BTreeMap<(PhotoId, ObjectId), (Pose, TwistCovariance)>,
+    snap_covariances: BTreeMap<(PhotoId, ObjectId), sureness::OfSnap>,
     history: History,
     log: log::Log,
     gesture: Option<Gesture>,

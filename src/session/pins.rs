@@ -82,15 +82,18 @@ impl Session {
         }
         let residual = |pin: &Pin| Some(camera.project(pose.transform_point(pin.point_mm))? - pin.pixel);
         let residuals_px: Vec<Option<DVec2>> = pins.iter().map(residual).collect();
-        let pulling = pins.iter().zip(&residuals_px).filter(|(pin, _)| pin.counts());
-        let squares: Vec<f64> = pulling.filter_map(|(_, r)| Some((*r)?.length_squared())).collect();
         let solution = self.solution(target, pins, pose).ok();
+        let misclicks = solution.as_ref().map_or_else(Vec::new, |solution| solution.misclicks.clone());
+        let pulls = |number: usize, pin: &Pin| pin.counts() && !misclicks.contains(&number);
+        let pulling =
+            pins.iter().enumerate().zip(&residuals_px).filter(|((number, pin), _)| pulls(*number, pin));
+        let squares: Vec<f64> = pulling.filter_map(|(_, r)| Some((*r)?.length_squared())).collect();
         Some(PinReport {
             rms_px: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             residuals_px,
             is_solved: solution.as_ref().is_some_and(|solution| is_same(&solution.camera_from_object, pose)),
             covariance: solution.as_ref().and_then(|solution| solution.covariance),
-            misclicks: solution.as_ref().map_or_else(Vec::new, |solution| solution.misclicks.clone()),
+            misclicks,
             advice: solution.as_ref().map_or_else(Vec::new, |solution| solution.advice.clone()),
             alternatives: solution.map_or_else(Vec::new, |solution| solution.alternatives),
         })
@@ -234,16 +237,18 @@ impl Session {
         Ok(vec![Effect::SnapAll(self.snappable())])
     }
 
-    /// Posed, and neither locked nor confirmed, photo by photo.
+    /// Posed or carried over, and neither locked nor confirmed, photo by photo.
     pub(super) fn snappable(&self) -> Vec<Target> {
         let scene = &self.scene;
         let all = scene.photos.iter().flat_map(|photo| {
             scene.objects_in(photo.id).map(|(object, annotation)| ((photo.id, object.id), annotation))
         });
-        all.filter(|(_, annotation)| annotation.state == AnnotationState::Posed)
-            .map(|(target, _)| target)
-            .filter(|target| self.check_movable(*target).is_ok())
-            .collect()
+        all.filter(|(_, annotation)| {
+            matches!(annotation.state, AnnotationState::Posed | AnnotationState::Carried)
+        })
+        .map(|(target, _)| target)
+        .filter(|target| self.check_movable(*target).is_ok())
+        .collect()
     }
 
     pub(super) fn take_snaps(

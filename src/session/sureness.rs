@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::Session;
-use crate::math::{Pose, Ray};
-use crate::scene::{CameraOrigin, Object, ObjectId, PhotoId, PoseSource};
+use crate::math::{Intrinsics, Pose, Ray};
+use crate::scene::{Object, ObjectId, PhotoId, PoseSource};
 use crate::solve::pins::PinOptions;
 use crate::solve::{
     FreeTurns, Tolerances, TwistCovariance, Uncertainty, Weakest, most_helpful_point, weakest,
@@ -25,6 +25,8 @@ pub struct Sureness {
     pub leaves_out_turns: bool,
     /// Of the depth's standard deviation what the tolerances alone make: no pin changes that.
     pub by_tolerances_mm: f64,
+    /// One standard deviation of a focal length that is estimated, as a part of it. It is a part of all this.
+    pub guessed_focal: Option<f64>,
     pub weakest: Option<Weakest>,
     pub helpful_pin: Option<HelpfulPin>,
 }
@@ -38,23 +40,36 @@ pub struct HelpfulPin {
     pub depth_mm: f64,
 }
 
+/// How sure a snap was, and of what.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OfSnap {
+    camera_from_object: Pose,
+    camera: Intrinsics,
+    covariance: TwistCovariance,
+}
+
 impl Session {
-    /// Keeps how sure a snap was of its pose, as long as the pose is that one.
+    /// Keeps how sure a snap is of the present pose, as long as the pose and the camera are these.
     pub(super) fn note_snap(&mut self, target: (PhotoId, ObjectId), covariance: Option<TwistCovariance>) {
         let pose = self.scene.annotation(target.0, target.1).map(|annotation| annotation.camera_from_object);
-        match pose.zip(covariance) {
-            Some(known) => self.snap_covariances.insert(target, known),
+        let camera = self.scene.photo(target.0).map(|photo| photo.camera);
+        match pose.zip(camera).zip(covariance) {
+            Some(((camera_from_object, camera), covariance)) => {
+                self.snap_covariances.insert(target, OfSnap { camera_from_object, camera, covariance })
+            }
             None => self.snap_covariances.remove(&target),
         };
+        self.touched();
     }
 
     /// How sure the selected pose is: by its last snap, else by its pins. `None` where neither gave it.
     pub fn sureness(&self, tolerances: &Tolerances) -> Option<Sureness> {
         let (photo, object, annotation) = self.selected_annotation()?;
         let pose = &annotation.camera_from_object;
-        let snapped = self.snap_covariances.get(&(photo, object)).filter(|(snapped, _)| snapped == pose);
-        let (source, covariance) = match snapped {
-            Some((_, covariance)) => (PoseSource::Snap, *covariance),
+        let camera = self.scene.photo(photo)?.camera;
+        let is_of_this = |known: &&OfSnap| (&known.camera_from_object, known.camera) == (pose, camera);
+        let (source, covariance) = match self.snap_covariances.get(&(photo, object)).filter(is_of_this) {
+            Some(known) => (PoseSource::Snap, known.covariance),
             None => {
                 let report = self.pin_report().filter(|report| report.is_solved)?;
                 (PoseSource::Pins, report.covariance?)
@@ -62,9 +77,8 @@ impl Session {
         };
         let (photo, object) = (self.scene.photo(photo)?, self.scene.object(object)?);
         let mut tolerances = *tolerances;
-        if let CameraOrigin::Pins { relative_sigma } = photo.camera_origin {
-            tolerances.focal = tolerances.focal.max(relative_sigma);
-        }
+        let guessed_focal = photo.camera_origin.focal_sigma();
+        tolerances.focal = tolerances.focal.max(guessed_focal.unwrap_or(0.0));
         let sphere = object.mesh.mesh.sphere();
         let center = pose.transform_point(sphere.center);
         let free = FreeTurns::of(&object.symmetries, pose, sphere.center, sphere.radius);
@@ -85,6 +99,7 @@ impl Session {
             leaves_out_turns: !free.is_empty(),
             uncertainty: Uncertainty::of(&wide, pose, sphere.center),
             by_tolerances_mm,
+            guessed_focal,
             weakest: weakest(&wide, pose, sphere.center, sphere.radius),
             helpful_pin: helpful.map(|(point, depth_mm)| HelpfulPin {
                 way: way(point),

@@ -139,7 +139,7 @@ commands![
     (ToggleTheme, "toggle_theme", View, "Light or dark", "Switch between the light and the dark theme", None, always),
     (MoveTool, "move_tool", Pose, "Move", "Drag an object: the point you grab stays under the cursor", key("M"), always),
     (RotateTool, "rotate_tool", Pose, "Rotate", "Drag an object to turn it about its centre", key("R"), always),
-    (PinTool, "pin_tool", Pose, "Pin", "Click a point of the object, then drag the pin to where that point is in the photo", key("X"), always),
+    (PinTool, "pin_tool", Pose, "Pin", "Click a point of the object, then drag the pin to where that point is in the photo; Shift + click sets the place in the photo first", key("X"), always),
     (SolvePins, "solve_pins", Pose, "Pose from pins", "The pose that brings the pins to their pixels", shift("X"), needs_pins),
     (ClearPins, "clear_pins", Pose, "Remove all pins", "Remove the pins of the selected object in this photo; the pose stays", None, needs_pins),
     (FocalFromPins, "focal_from_pins", Pose, "Focal length from pins", "The focal length and the pose that fit six pins or more", None, needs_six_pins),

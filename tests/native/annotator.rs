@@ -129,6 +129,8 @@ fn enter_confirms_and_carries_to_an_untouched_photo() {
     if session.photo().unwrap().asset.width == 640 {
         assert_eq!(state_of(&session, (shown, object)), AnnotationState::Carried);
         assert_eq!(pose_of(&session, (shown, object)), moved);
+        // A carried pose is one to snap from; a confirmed one stays.
+        assert_eq!(press(&mut session, CommandId::SnapAll), [Effect::SnapAll(vec![(shown, object)])]);
     }
     // Photos of another size are no sequence.
     assert!(session.scene().annotation(last, object).is_none());

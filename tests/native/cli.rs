@@ -216,6 +216,11 @@ fn poses_are_snapped_to_their_photos() {
     let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
     let verdict = answer["snaps"][0]["verdict"].as_str().unwrap();
     assert!(verdict.contains("confirmed"), "{verdict}");
+    arguments.extend(["--photo", "000019.png", "--photo", "00019.png"]);
+    let mistyped = pinpose(&arguments);
+    assert_eq!(mistyped.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&mistyped.stderr);
+    assert!(said.contains("00019.png: there is no such photo"), "{said}");
     let nothing = pinpose(&["snap", &folder.join("000019.png").display().to_string()]);
     assert_eq!(nothing.status.code(), Some(1));
 }

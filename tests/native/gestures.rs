@@ -3,7 +3,7 @@
 use glam::DVec2;
 use pinpose::interact::{Button, Gestures, Modifiers, PhotoView, PointerAction, PointerEvent, pick_all};
 use pinpose::scene::AnnotationState;
-use pinpose::session::{Command, CommandId, Session};
+use pinpose::session::{Command, CommandId, HalfPin, Session, Tool};
 
 use crate::support::{NOW_MS, small_session};
 
@@ -195,6 +195,33 @@ fn escape_puts_the_drag_back_and_the_rest_of_it_does_nothing() {
     hand.act(middle + DVec2::new(60.0, 0.0), PointerAction::Release(Button::Left));
     assert_eq!(hand.pose(), before);
     assert_eq!(hand.session.undo_label(), Some("Add files"));
+}
+
+#[test]
+fn shift_sets_the_place_in_the_photo_first_though_the_object_be_over_it() {
+    let mut hand = Hand::new();
+    hand.session.apply(Command::SetTool(Tool::Pin), NOW_MS).unwrap();
+    let click = |hand: &mut Hand, position: DVec2| {
+        hand.act(position, PointerAction::Press(Button::Left));
+        hand.act(position, PointerAction::Release(Button::Left));
+    };
+    let (middle, before) = (hand.middle(), hand.pose());
+    hand.modifiers.shift = true;
+    click(&mut hand, middle + DVec2::new(6.0, 2.0));
+    let Some(HalfPin::Pixel(place)) = hand.session.half_pin() else { panic!("a place alone") };
+    click(&mut hand, middle + DVec2::new(4.0, 0.0));
+    let Some(HalfPin::Pixel(corrected)) = hand.session.half_pin() else { panic!("a better place") };
+    assert_ne!(place, corrected);
+    assert_eq!(hand.pose(), before);
+    hand.modifiers.shift = false;
+    click(&mut hand, middle);
+    let (.., annotation) = hand.session.selected_annotation().unwrap();
+    assert_eq!(annotation.pins.len(), 1);
+    assert_eq!((annotation.pins[0].pixel, hand.session.half_pin()), (corrected, None));
+    let seen = hand.session.photo().unwrap().camera;
+    let seen = seen.project(hand.pose().transform_point(annotation.pins[0].point_mm)).unwrap();
+    // One pin is met by a shift: to the solver's last step.
+    assert!(seen.distance(corrected) < 1e-3, "{seen} {corrected}");
 }
 
 #[test]

@@ -7,8 +7,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glam::{DVec2, DVec3};
 use pinpose::interact::Hands;
-use pinpose::scene::{Fold, Pin, PoseSource, SymmetryAxis};
-use pinpose::session::{Command, ObjectChange, PinChange, Session};
+use pinpose::scene::{CameraOrigin, Fold, Pin, PoseSource, SymmetryAxis};
+use pinpose::session::{Command, CommandId, ObjectChange, PinChange, Session};
 use pinpose::solve::{Tolerances, TwistCovariance, Uncertainty, Weakness};
 use pinpose::ui::{self, ShownMotion, UiState};
 
@@ -63,10 +63,34 @@ fn tolerances_and_snaps_change_how_sure_a_pose_is() {
     session.apply(take, NOW_MS).unwrap();
     let by_snap = session.sureness(&EXACT).unwrap();
     assert_eq!((by_snap.source, by_snap.weakest.unwrap().kind), (PoseSource::Snap, Weakness::Roll));
+    // It is of this camera alone.
+    let fx_of = |session: &mut Session, factor: f64| {
+        let before = session.photo().unwrap();
+        let (photo, mut camera) = (before.id, before.camera);
+        camera.fx *= factor;
+        session.apply(Command::SetCamera { photo, camera, origin: CameraOrigin::Typed }, NOW_MS).unwrap();
+    };
+    fx_of(&mut session, 1.1);
+    assert!(session.sureness(&EXACT).is_none_or(|sureness| sureness.source != PoseSource::Snap));
+    session.apply(Command::Run(CommandId::Undo), NOW_MS).unwrap();
+    assert_eq!(session.sureness(&EXACT), Some(by_snap));
     let moved = snapped.translated(DVec3::Y * 3.0);
     let set = Command::SetPose { photo, object, camera_from_object: moved, source: PoseSource::Manual };
     session.apply(set, NOW_MS).unwrap();
     assert_eq!(session.sureness(&EXACT), None, "nothing is known of a pose by hand");
+    // Until a snap looked, though it found none that is better.
+    let fx = 1.05 * session.photo().unwrap().camera.fx;
+    session.apply(Command::SetFocal { photo, fx }, NOW_MS).unwrap();
+    let pose = session.selected_annotation().unwrap().2.camera_from_object;
+    let covariance = Some(Box::new(TwistCovariance::from_steps_about(pose.translation_mm, &steps)));
+    session.apply(Command::NoteSnap { photo, object, covariance }, NOW_MS).unwrap();
+    assert_eq!(session.selected_annotation().unwrap().2.camera_from_object, pose);
+    let kept = session.sureness(&EXACT).unwrap();
+    assert_eq!(kept.source, PoseSource::Snap);
+    // A focal length by eye is counted without anybody saying so.
+    let sigma = kept.guessed_focal.unwrap();
+    let depth_mm = kept.uncertainty.depth_mm;
+    assert!(sigma > 0.0 && depth_mm > 0.99 * sigma * pose.translation_mm.z, "{kept:?}");
 }
 
 #[test]

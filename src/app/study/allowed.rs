@@ -32,7 +32,7 @@ pub fn verdict(command: &Command, tools: &[Tool], session: &Session, by_handle: 
         | Command::EditPins(_) => needs(Tool::Pins, "setting pins"),
         Command::Nudge(..) | Command::SetNudge(_) => needs(Tool::Nudge, "moving by keys"),
         Command::SetPoseFromText(_) => needs(Tool::Numbers, "setting a pose by numbers"),
-        Command::TakeSnap { .. } => needs(Tool::Snap, "snap"),
+        Command::TakeSnap { .. } | Command::NoteSnap { .. } => needs(Tool::Snap, "snap"),
         Command::SetLook(_) => needs(Tool::Looks, "another look"),
         Command::SetPanes(_) => needs(Tool::SceneView, "another view"),
         Command::Drag { .. }

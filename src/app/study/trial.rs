@@ -316,6 +316,9 @@ impl PinPose {
         }
         if matches!(command, Command::CancelGesture | Command::Run(CommandId::Cancel)) {
             self.hands.cancel();
+            if self.stop_snap_first() {
+                return Ok(());
+            }
         }
         let effects = self.session.apply(command, now_ms).map_err(|error| error.to_string())?;
         effects.into_iter().for_each(|effect| self.carry_out(effect));

@@ -37,7 +37,7 @@ use crate::scene::DepthInMm;
 use look::{Density, Look};
 use measurements::motion_in;
 use prior::Prior;
-use refinement::{Evidence, Refinement};
+use refinement::Refinement;
 use search::Search;
 use sight::{Given, Sight};
 
@@ -94,7 +94,7 @@ impl fmt::Display for SnapVerdict {
         f.write_str(match self {
             Self::Improved => "The photo supports this pose better.",
             Self::StartIsBest => "The photo supports no better pose near this one.",
-            Self::OutOfView => "Too little of the object is in the photo to snap to.",
+            Self::OutOfView => "Too little of the object's outline is in the photo to snap to.",
             Self::NoContrast => "The photo shows too little of the outline here to be sure of a better pose.",
             Self::TooFar => "The photo pulls the object far away from here; that is not to be trusted. Place it more closely.",
             Self::PinsDisagree => {
@@ -111,7 +111,7 @@ pub struct SnapOutcome {
     pub verdict: SnapVerdict,
     pub score_before: f64,
     pub score_after: f64,
-    /// From the last normal equations; `None` where the start was returned, or where they leave a direction open.
+    /// Of the returned pose; `None` where the photo was not to be trusted, or where it leaves a direction open.
     pub covariance: Option<TwistCovariance>,
     /// How far the object was turned and its middle was moved.
     pub turned_rad: f64,
@@ -319,26 +319,32 @@ impl Snap {
         if is_poor {
             return self.refused(SnapVerdict::NoContrast);
         }
+        let covariance_of = |pose: &Pose| covariance((pose, best), &self.refinements, self.model.center_mm());
         if best.score < before + SMALLEST_GAIN {
-            return self.refused(SnapVerdict::StartIsBest);
+            let covariance = covariance_of(start);
+            return SnapOutcome { covariance, ..self.refused(SnapVerdict::StartIsBest) };
         }
         SnapOutcome {
             camera_from_object: best.pose,
             verdict: SnapVerdict::Improved,
             score_before: before,
             score_after: best.score,
-            covariance: covariance(best, &self.refinements, self.model.center_mm()),
+            covariance: covariance_of(&best.pose),
             turned_rad,
             moved_mm,
         }
     }
 }
 
-/// Of the normal equations where a refinement ended, and of the other ends, which may be right as well where the photo agrees
-/// with them nearly as much. A pose of a low score is more often than not beside the truth by more than its neighbourhood
+/// Of a pose, by the normal equations where the best refinement ended, and by all ends, which may be right where the photo
+/// agrees with them nearly as much. A pose of a low score is more often than not beside the truth by more than its neighbourhood
 /// tells.
-fn covariance(end: &Refinement, all: &[Refinement], center_mm: DVec3) -> Option<TwistCovariance> {
-    let Evidence { equations, pivot_camera_mm } = end.evidence.as_ref()?;
+fn covariance(
+    (pose, end): (&Pose, &Refinement),
+    all: &[Refinement],
+    center_mm: DVec3,
+) -> Option<TwistCovariance> {
+    let equations = end.evidence.as_ref()?;
     let doubt = (SURE_SCORE / end.score).max(1.0).powi(8);
     let of_all = inverse(&equations.h)?;
     let mut covariance: Matrix<6> =
@@ -346,13 +352,13 @@ fn covariance(end: &Refinement, all: &[Refinement], center_mm: DVec3) -> Option<
     let likelihood = |other: &Refinement| ((other.score - end.score) / SCORE_NOISE).exp();
     let total: f64 = all.iter().map(likelihood).sum();
     for other in all {
-        let step = step_between(&end.pose, &other.pose, center_mm);
+        let step = step_between(pose, &other.pose, center_mm);
         let weight = likelihood(other) / total;
         for (row, a) in covariance.iter_mut().zip(step) {
             row.iter_mut().zip(step).for_each(|(value, b)| *value += weight * a * b);
         }
     }
-    Some(TwistCovariance::from_steps_about(*pivot_camera_mm, &covariance))
+    Some(TwistCovariance::from_steps_about(pose.transform_point(center_mm), &covariance))
 }
 
 /// Scores of poses that differ by less than this tell little of which is right.

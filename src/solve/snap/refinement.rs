@@ -56,20 +56,14 @@ pub struct Scene<'a> {
     pub prior: &'a Prior,
 }
 
-/// What the picture and the pins say, without the start; for small motions about the pivot.
-#[derive(Debug, Clone)]
-pub struct Evidence {
-    pub equations: Equations,
-    pub pivot_camera_mm: DVec3,
-}
-
 /// The way from one place.
 #[derive(Debug, Clone)]
 pub struct Refinement {
     pub pose: Pose,
     /// Of the pose, once it was rated; far below any other where too little of the object is in the picture.
     pub score: f64,
-    pub evidence: Option<Evidence>,
+    /// What the picture and the pins say, without the start; for small motions about the object's middle.
+    pub evidence: Option<Equations>,
     colors: Option<ColorModel>,
     step: u32,
 }
@@ -131,7 +125,7 @@ impl Refinement {
             return false;
         }
         self.pose = moved;
-        self.evidence = Some(Evidence { equations, pivot_camera_mm });
+        self.evidence = Some(equations);
         look.motion_px(&motion, pivot_camera_mm.z, picture) > SMALLEST_STEP_PX || self.step < FIRST_STEPS
     }
 

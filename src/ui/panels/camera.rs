@@ -205,7 +205,12 @@ fn quiet_origin(ui: &mut Ui, photo: &Photo, room: f32) {
 fn guess(ui: &mut Ui, session: &Session, photo: &Photo) {
     match &photo.camera_origin {
         CameraOrigin::AssumedFieldOfView => {
-            note(ui, "A guess: 60° field of view. Drop a camera file or type the numbers.", true);
+            let depth = depth_words(&photo.camera_origin);
+            note(
+                ui,
+                &format!("A guess: 60° field of view, {depth}. Drop a camera file or type the numbers."),
+                true,
+            );
         }
         CameraOrigin::Exif(source) => {
             let from = match source {
@@ -217,7 +222,12 @@ fn guess(ui: &mut Ui, session: &Session, photo: &Photo) {
                     "the lens in the photo's EXIF data and its camera's usual sensor"
                 }
             };
-            note(ui, &format!("Estimated from {from}. Drop a camera file or type the numbers."), true);
+            let depth = depth_words(&photo.camera_origin);
+            note(
+                ui,
+                &format!("Estimated from {from}, {depth}. Drop a camera file or type the numbers."),
+                true,
+            );
         }
         CameraOrigin::Pins { relative_sigma } => {
             let percent = 100.0 * relative_sigma;
@@ -238,6 +248,10 @@ fn guess(ui: &mut Ui, session: &Session, photo: &Photo) {
         }
         CameraOrigin::Typed | CameraOrigin::File(_) => {}
     }
+}
+
+fn depth_words(origin: &CameraOrigin) -> String {
+    format!("so depth may be {:.0} % off", 100.0 * origin.focal_sigma().unwrap_or(0.0))
 }
 
 /// Of the object's middle, along the view.

@@ -49,6 +49,10 @@ pub fn draw(ui: &mut Ui, session: &Session, tolerances: &mut Tolerances, form: &
     let body = |ui: &mut Ui| {
         numbers(ui, &sureness);
         tolerance_fields(ui, tolerances);
+        if let Some(sigma) = sureness.guessed_focal.filter(|sigma| *sigma > tolerances.focal) {
+            let percent = 100.0 * sigma;
+            note(ui, &format!("The focal length is an estimate: ± {percent:.1} % of it are counted."), false);
+        }
         if let Some(weakest) = sureness.weakest {
             let button = ui.button(format!("Show how far the {} may be off", name_of(weakest.kind)));
             let tooltip = "The direction in which the pose is least sure: it sways by two standard deviations, on the screen only";
@@ -60,7 +64,7 @@ pub fn draw(ui: &mut Ui, session: &Session, tolerances: &mut Tolerances, form: &
         if sureness.by_tolerances_mm > MOSTLY * sureness.uncertainty.depth_mm {
             note(
                 ui,
-                "Most of it comes from the two tolerances above: a calibrated camera and a measured mesh help.",
+                "Most of it comes from these tolerances: a calibrated camera and a measured mesh help.",
                 false,
             );
         } else if let Some(pin) = sureness.helpful_pin {
