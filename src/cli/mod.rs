@@ -33,8 +33,8 @@ pinpose evaluate --truth T POSES… [--json | --csv]
         how far poses are from the truth: rotation, translation, ADD, ADI, AD, MSSD, MSPD, projection, VSD, CUS;
         --truth may come several times; photos and meshes are given with either
 pinpose pins FILE                    2D-3D pairs and a camera (JSON) to a pose, residuals and covariance
-pinpose snap IN… [--photo NAME]… [--out POSES.json] [--json]
-        refine every pose to its photo; scores, poses and covariances
+pinpose snap IN… [--photo NAME]… [--wide] [--out POSES.json] [--json]
+        refine every pose to its photo; scores, poses and covariances; --wide looks twice as far around
 pinpose build-study IN… --out FOLDER [--protocol paper] [--id ID] [--title TITLE]
         photos, meshes and true poses as a study: FOLDER/study for a web host, FOLDER/truth.json for you
 pinpose simulate-study STUDY --participants N --out FOLDER [--seed S] [--truth T]

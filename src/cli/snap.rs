@@ -14,7 +14,7 @@ use crate::raster::Mask;
 use crate::scene::{Annotation, AnnotationState, DepthInMm, Object, ObjectId, Photo, PoseSource, Scene};
 use crate::session::{Command, Session};
 use crate::solve::contour::ContourModel;
-use crate::solve::snap::{Snap, SnapHints, SnapOptions, SnapOutcome, SnapVerdict};
+use crate::solve::snap::{Snap, SnapHints, SnapOptions, SnapOutcome, SnapReach, SnapVerdict};
 
 struct Options {
     paths: Vec<PathBuf>,
@@ -22,6 +22,7 @@ struct Options {
     /// Names of photos; empty for all.
     photos: Vec<String>,
     mesh_unit: Option<MeshUnit>,
+    reach: SnapReach,
     as_json: bool,
 }
 
@@ -55,7 +56,7 @@ pub fn run(parser: lexopt::Parser) -> Outcome {
                 continue;
             }
             // What was snapped already is where it is now.
-            let outcome = snap(session.scene(), &seen, object, annotation, &models)?;
+            let outcome = snap(session.scene(), &seen, (object, annotation), &models, options.reach)?;
             if let Some(outcome) = &outcome {
                 take(&mut session, photo, object, outcome)?;
             }
@@ -109,9 +110,9 @@ fn mask_of(scene: &Scene, photo: &Photo, object: ObjectId) -> Result<Option<Mask
 fn snap(
     scene: &Scene,
     seen: &Seen<'_>,
-    object: &Object,
-    annotation: &Annotation,
+    (object, annotation): (&Object, &Annotation),
     models: &[(ObjectId, Option<Arc<ContourModel>>)],
+    reach: SnapReach,
 ) -> Result<Option<SnapOutcome>, Failure> {
     let Seen { photo, pixels, depth } = seen;
     let model_of =
@@ -121,7 +122,7 @@ fn snap(
         .filter_map(|(other, annotation)| Some((model_of(other.id)?, annotation.camera_from_object)));
     let hints =
         SnapHints { pins: annotation.pins.clone(), occluders: occluders.collect(), depth: depth.clone() };
-    let options = SnapOptions { mask: mask_of(scene, photo, object.id)?, ..SnapOptions::default() };
+    let options = SnapOptions { mask: mask_of(scene, photo, object.id)?, reach };
     let start = &annotation.camera_from_object;
     let snap = |model| Snap::with(pixels, &photo.camera, model, start, hints, &options).run();
     Ok(model_of(object.id).map(snap))
@@ -185,12 +186,19 @@ fn line_of(line: &Value) -> String {
 }
 
 fn read_options(mut parser: lexopt::Parser) -> Result<Options, Failure> {
-    let mut options =
-        Options { paths: Vec::new(), out: None, photos: Vec::new(), mesh_unit: None, as_json: false };
+    let mut options = Options {
+        paths: Vec::new(),
+        out: None,
+        photos: Vec::new(),
+        mesh_unit: None,
+        reach: SnapReach::Near,
+        as_json: false,
+    };
     while let Some(argument) = parser.next()? {
         match argument {
             lexopt::Arg::Long("out") => options.out = Some(PathBuf::from(parser.value()?)),
             lexopt::Arg::Long("json") => options.as_json = true,
+            lexopt::Arg::Long("wide") => options.reach = SnapReach::Wide,
             lexopt::Arg::Long("mesh-unit") => options.mesh_unit = Some(open::mesh_unit(&mut parser)?),
             lexopt::Arg::Long("photo") => {
                 options.photos.push(parser.value()?.to_string_lossy().into_owned());

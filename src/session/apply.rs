@@ -2,7 +2,7 @@
 
 use super::{Burst, BurstKey, Command, CommandError, Effect, Session, Snapshot};
 use crate::math::Intrinsics;
-use crate::scene::{CameraOrigin, ObjectId, PhotoId, PoseSource, Scene};
+use crate::scene::{CameraOrigin, ObjectId, PhotoId, Scene};
 
 pub(super) type Applied = Result<Vec<Effect>, CommandError>;
 
@@ -108,10 +108,8 @@ impl Session {
                 Ok(Vec::new())
             }
             Command::TakeSnap { photo, object, camera_from_object, covariance } => {
-                self.set_pose("Snap", (photo, object), camera_from_object, PoseSource::Snap, now_ms)?;
-                self.note_snap((photo, object), covariance.map(|covariance| *covariance));
-                self.snapped = self.history.newest().map(|step| ((photo, object), step));
-                Ok(Vec::new())
+                let covariance = covariance.map(|covariance| *covariance);
+                self.take_snap((photo, object), camera_from_object, covariance, now_ms)
             }
             Command::NoteSnap { photo, object, covariance } => {
                 self.note_snap((photo, object), covariance.map(|covariance| *covariance));

@@ -15,7 +15,7 @@ use crate::scene::{
     Annotation, AnnotationState, CameraOrigin, ObjectId, PhotoId, Pin, PoseSource, file_stem,
 };
 use crate::solve::TwistCovariance;
-use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, solve_focal, solve_pins};
+use crate::solve::pins::{PinAdvice, PinOptions, PinPose, PinSolution, leave_open, solve_focal, solve_pins};
 use crate::solve::snap::SnapReach;
 
 /// A pose's place: one object in one photo.
@@ -152,10 +152,9 @@ impl Session {
         checked(&moved)?;
         *dragged = moved;
         let pins = pins.clone();
-        // What one or two pins leave open is kept as it was when the gesture began, so that a way there and back ends where
-        // it started. More pins go on from the last pose, lest they jump to another that fits as well.
-        let is_open = pins.iter().filter(|pin| pin.counts()).count() < 3;
-        let before = self.gesture.as_ref().filter(|_| is_open).map(|gesture| &gesture.before.scene);
+        // What one or two pins leave open, or any on a line, is kept as it was when the gesture began, so that a way there and
+        // back ends where it started. Other pins go on from the last pose, lest they jump to another that fits as well.
+        let before = self.gesture.as_ref().filter(|_| leave_open(&pins)).map(|gesture| &gesture.before.scene);
         let start = before.unwrap_or(&self.scene).annotation(target.0, target.1);
         let Some(start) = start.map(|annotation| annotation.camera_from_object) else {
             return Ok(Vec::new());
@@ -251,6 +250,22 @@ impl Session {
         .collect()
     }
 
+    /// What is linked to the object goes along; what is only selected with it has its own place in the photo.
+    pub(super) fn take_snap(
+        &mut self,
+        target: Target,
+        camera_from_object: Pose,
+        covariance: Option<TwistCovariance>,
+        now_ms: f64,
+    ) -> Applied {
+        self.check_settable(target)?;
+        let poses = self.with_linked(target, camera_from_object);
+        let effects = self.change_poses("Snap", poses, PoseSource::Snap, now_ms)?;
+        self.note_snap(target, covariance);
+        self.snapped = self.history.newest().map(|step| (target, step));
+        Ok(effects)
+    }
+
     pub(super) fn take_snaps(
         &mut self,
         mut snaps: Vec<(Target, Pose, Option<TwistCovariance>)>,
@@ -282,8 +297,8 @@ impl Session {
         })
     }
 
-    /// The same points in the next photo, where its pose has them, and shows it. Where the object is not there yet, it comes
-    /// with this photo's pose.
+    /// The same points in the next photo, where its pose has them, and shows it. A point that is pinned there already stays
+    /// where it was put. Where the object is not there yet, it comes with this photo's pose.
     pub(super) fn copy_pins_to_next(&mut self, now_ms: f64) -> Applied {
         let Some((photo, object, annotation)) = self.selected_annotation() else { return Ok(Vec::new()) };
         let position = self.scene.photos.iter().position(|candidate| candidate.id == photo);
@@ -297,6 +312,7 @@ impl Session {
                 changed_at_ms: now_ms,
                 camera_changed: false,
                 score: None,
+                pins: Vec::new(),
                 ..source.clone()
             });
             if there.state == AnnotationState::Untouched {
@@ -309,7 +325,9 @@ impl Session {
                 let point = there.camera_from_object.transform_point(pin.point_mm);
                 Pin { pixel: camera.project(point).unwrap_or(pin.pixel), ..*pin }
             };
-            there.pins = source.pins.iter().map(seen).collect();
+            let is_new = |pin: &&Pin| there.pins.iter().all(|known| known.point_mm != pin.point_mm);
+            let new: Vec<Pin> = source.pins.iter().filter(is_new).map(seen).collect();
+            there.pins.extend(new);
         })?;
         self.show_photo(next)?;
         self.select(Some(object))

@@ -189,6 +189,23 @@ impl Session {
 
     /// The poses of one motion: the target's own, and those of what is linked to it or selected with it.
     pub(super) fn with_followers(&self, origin: &Scene, target: Target, pose: Pose) -> Vec<(Target, Pose)> {
+        let object = target.1;
+        let selected = if self.is_selected(object) { self.selection() } else { Vec::new() };
+        self.moved_together(origin, target, pose, self.scene.linked_to(object).chain(selected).collect())
+    }
+
+    /// The poses of one motion: the target's own, and those of what is linked to it.
+    pub(super) fn with_linked(&self, target: Target, pose: Pose) -> Vec<(Target, Pose)> {
+        self.moved_together(&self.scene, target, pose, self.scene.linked_to(target.1).collect())
+    }
+
+    fn moved_together(
+        &self,
+        origin: &Scene,
+        target: Target,
+        pose: Pose,
+        mut followers: Vec<ObjectId>,
+    ) -> Vec<(Target, Pose)> {
         let (photo, object) = target;
         let mut poses = vec![(target, pose)];
         let Some(start) = origin.annotation(photo, object).map(|annotation| annotation.camera_from_object)
@@ -196,8 +213,6 @@ impl Session {
             return poses;
         };
         let moved_from_before = pose * start.inverse();
-        let selected = if self.is_selected(object) { self.selection() } else { Vec::new() };
-        let mut followers: Vec<ObjectId> = self.scene.linked_to(object).chain(selected).collect();
         followers.sort_unstable();
         followers.dedup();
         for follower in followers.into_iter().filter(|follower| *follower != object) {

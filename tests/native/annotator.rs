@@ -105,7 +105,19 @@ fn linked_objects_move_as_one_body() {
     assert!(after.angle_to(&between) < 1e-7);
     press(&mut session, CommandId::Undo);
     assert!((pose_of(&session, first).inverse() * pose_of(&session, second)).angle_to(&between) < 1e-12);
+    // A snap is a motion too; what is only selected with it stays.
+    let camera_from_object = turn * pose_of(&session, first);
+    let snap = Command::TakeSnap { photo: first.0, object: first.1, camera_from_object, covariance: None };
+    run(&mut session, snap.clone());
+    assert!((pose_of(&session, first).inverse() * pose_of(&session, second)).angle_to(&between) < 1e-7);
+    press(&mut session, CommandId::Undo);
     press(&mut session, CommandId::UnlinkObjects);
+    press(&mut session, CommandId::SelectAll);
+    let second_before = pose_of(&session, second);
+    run(&mut session, snap);
+    assert_eq!(pose_of(&session, second), second_before);
+    press(&mut session, CommandId::Undo);
+    run(&mut session, Command::Select(Some(first.1)));
     let second_before = pose_of(&session, second);
     run(&mut session, Command::Nudge(Nudge::Left, 10.0));
     assert_eq!(pose_of(&session, second), second_before);

@@ -195,6 +195,10 @@ fn poses_are_snapped_to_their_photos() {
     let output = pinpose(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mut wide: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    wide.push("--wide");
+    let wide: Value = serde_json::from_slice(&pinpose(&wide).stdout).unwrap();
+    assert_ne!(wide["snaps"], answer["snaps"], "more starts");
     let snap = &answer["snaps"][0];
     assert_eq!((&snap["photo"], &snap["object"]), (&"000019.png".into(), &"obj_000001".into()));
     // From the truth there is nowhere far to go: the benchmark says how far it goes elsewhere.

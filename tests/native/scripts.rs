@@ -359,6 +359,53 @@ fn a_way_with_one_pin_there_and_back_ends_where_it_began() {
     assert_eq!(session.pivot_mm(photo, object), Some(point));
 }
 
+/// What pins on a line leave open must not drift with the number of moves.
+#[test]
+fn a_way_with_three_pins_on_a_line_there_and_back_ends_where_it_began() {
+    let mut session = small_session();
+    let (photo, object, annotation) = session.selected_annotation().unwrap();
+    let start = annotation.camera_from_object;
+    let camera = session.photo().unwrap().camera;
+    let pixel_of = |point: DVec3| camera.project(start.transform_point(point)).unwrap();
+    let points = [-40.0, 0.0, 40.0].map(|x| DVec3::new(x, -30.0, -20.0));
+    run(&mut session, Command::BeginGesture("Add pin"));
+    for point in points {
+        run(&mut session, Command::AddPin { photo, object, pin: Pin::new(point, pixel_of(point)) });
+    }
+    for step in 0..=40 {
+        let turn = std::f64::consts::TAU * f64::from(step) / 40.0;
+        let pixel = pixel_of(points[2]) + 25.0 * DVec2::new(turn.sin(), turn.cos() - 1.0);
+        run(&mut session, Command::DragPin { photo, object, pin: 2, pixel });
+    }
+    run(&mut session, Command::EndGesture);
+    let end = shown_pose(&session);
+    // Where the solver stops; it was 0.17 rad when each move began where the last one had ended.
+    assert!(end.angle_to(&start) < 1e-5, "{}", end.angle_to(&start));
+}
+
+#[test]
+fn pins_go_to_the_next_photo_beside_those_that_were_set_there() {
+    let mut session = small_session();
+    drop_files(&mut session, &[flat_photo("second.png", 640, 479)], None);
+    let [first, second] = [0, 1].map(|number: usize| session.scene().photos[number].id);
+    run(&mut session, Command::ShowPhoto(first));
+    let pose = shown_pose(&session);
+    set_pins(&mut session, &pose);
+    run(&mut session, Command::Run(CommandId::CopyPinsToNext));
+    assert_eq!(session.photo().unwrap().id, second);
+    let (photo, object, annotation) = session.selected_annotation().unwrap();
+    assert_eq!((annotation.pins.len(), annotation.state), (6, AnnotationState::Carried));
+    run(&mut session, Command::EditPins(PinChange::Remove(5)));
+    let pixel = session.selected_annotation().unwrap().2.pins[0].pixel + DVec2::new(4.0, 1.0);
+    run(&mut session, Command::BeginGesture("Drag pin"));
+    run(&mut session, Command::DragPin { photo, object, pin: 0, pixel });
+    run(&mut session, Command::EndGesture);
+    run(&mut session, Command::ShowPhoto(first));
+    run(&mut session, Command::Run(CommandId::CopyPinsToNext));
+    let pins = &session.selected_annotation().unwrap().2.pins;
+    assert_eq!((pins.len(), pins[0].pixel), (6, pixel), "what was put there stays, what is missing comes");
+}
+
 #[test]
 fn a_pin_off_its_place_is_named_and_can_be_switched_off() {
     let mut session = small_session();

@@ -133,6 +133,7 @@ fn the_panel_shows_the_numbers_and_the_weakest_direction() {
     harness.run();
     harness.get_by_label_contains("mm sideways");
     harness.get_by_label_contains("The next pin helps most at");
+    harness.get_by_label_contains("Depth is least sure. A photo from the side");
     harness.get_by_label("focal tolerance").click();
     harness.run();
     harness.get_by_label("focal tolerance").type_text("5");
@@ -140,10 +141,20 @@ fn the_panel_shows_the_numbers_and_the_weakest_direction() {
     harness.key_press(egui::Key::Enter);
     harness.run();
     // 5 % of the distance is more than the pins leave open in any direction, and no pin changes that.
-    harness.get_by_label_contains("a calibrated camera");
+    harness.get_by_label_contains("a calibrated camera and a measured mesh");
+    assert!(harness.query_by_label_contains("A photo from the side").is_none(), "it would be off there too");
     harness.get_by_label("Show how far the depth may be off").click();
     harness.run();
     assert!(matches!(*motion.borrow(), Some(ShownMotion::Sway(weakest)) if weakest.kind == Weakness::Depth));
+    // A guess is more than what was typed.
+    {
+        let mut session = session.borrow_mut();
+        let photo = session.photo().unwrap();
+        let (photo, camera, origin) = (photo.id, photo.camera, CameraOrigin::AssumedFieldOfView);
+        session.apply(Command::SetCamera { photo, camera, origin }, NOW_MS).unwrap();
+    }
+    harness.run();
+    harness.get_by_label_contains("Most of the depth's comes from the estimated focal length");
     if let Ok(picture) = harness.render() {
         picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("sureness-panel.png")).unwrap();
     }

@@ -18,7 +18,7 @@ use crate::math::{Intrinsics, Pose};
 pub use crate::scene::Pin;
 pub use advice::PinAdvice;
 pub use focal::{FocalError, FocalSolution, solve_focal};
-pub use solution::{PinPose, PinSolution, solve_pins};
+pub use solution::{PinPose, PinSolution, leave_open, solve_pins};
 
 /// What is known of the clicks and the object.
 #[derive(Debug, Clone, Copy, PartialEq)]

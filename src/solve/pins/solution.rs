@@ -11,7 +11,7 @@ use super::refine::{Fit, Fitting, Kernel, Prior, middle, residual};
 use super::spread::Spread;
 use super::sqpnp::{Sighting, sqpnp};
 use super::{Pin, PinError, PinOptions, checked};
-use crate::math::{Intrinsics, NEAR_MM, Pose, rotation_from_rotation_vector};
+use crate::math::{Intrinsics, NEAR_MM, Pose, rotation_from_rotation_vector, sort_short};
 
 /// A pose that fits the pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,6 +79,12 @@ pub fn solve_pins(
     })
 }
 
+/// Do these pins leave a pose open, whatever their pixels are? Those that do not count have no say.
+pub fn leave_open(pins: &[Pin]) -> bool {
+    let points: Vec<DVec3> = pins.iter().filter(|pin| pin.counts()).map(|pin| pin.point_mm).collect();
+    points.len() < 3 || Spread::of(&points).is_none_or(|spread| spread.is_collinear())
+}
+
 /// Beyond this many standard deviations of a click, misclicks are looked for.
 const DOUBTFUL_SIGMAS: f64 = 3.0;
 /// Poses whose squared misfit differs by less than this many variances of a click cannot be told apart (3σ).
@@ -102,9 +108,8 @@ impl Solver<'_> {
         self.pins.iter().map(|pin| pin.point_mm).collect()
     }
 
-    /// Do the pins leave the pose open, whatever their pixels are?
     fn is_open(&self) -> bool {
-        self.pins.len() < 3 || Spread::of(&self.points()).is_none_or(|spread| spread.is_collinear())
+        leave_open(self.pins)
     }
 
     /// The poses that fit better than any near them, all before the camera, the best first.
@@ -127,10 +132,12 @@ impl Solver<'_> {
                 .iter()
                 .any(|pin| residual(self.camera, &fit.pose, pin).is_none_or(|r| r.length() > width))
         };
-        minima
+        let mut minima: Vec<Fit> = minima
             .into_iter()
             .map(|fit| if is_rough(&fit) { robust.descend(fit.pose).unwrap_or(fit) } else { fit })
-            .collect()
+            .collect();
+        sort_short(&mut minima, |a, b| a.equations.cost.total_cmp(&b.equations.cost));
+        minima
     }
 
     fn starts(&self) -> Vec<Pose> {

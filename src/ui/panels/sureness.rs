@@ -59,19 +59,40 @@ pub fn draw(ui: &mut Ui, session: &Session, tolerances: &mut Tolerances, form: &
             if button.on_hover_text(tooltip).clicked() {
                 form.asked_sway = Some(weakest);
             }
-            note(ui, view_that_helps(weakest.kind), false);
         }
-        if sureness.by_tolerances_mm > MOSTLY * sureness.uncertainty.depth_mm {
-            note(
-                ui,
-                "Most of it comes from these tolerances: a calibrated camera and a measured mesh help.",
-                false,
-            );
-        } else if let Some(pin) = sureness.helpful_pin {
-            note(ui, &pin_that_helps(&pin, &sureness.uncertainty), false);
-        }
+        advice(ui, &sureness, tolerances);
     };
     section(ui, "Uncertainty", true, |_| {}, body);
+}
+
+/// What would help most.
+fn advice(ui: &mut Ui, sureness: &Sureness, tolerances: &Tolerances) {
+    let is_by_tolerances = sureness.by_tolerances_mm > MOSTLY * sureness.uncertainty.depth_mm;
+    let weakest = sureness.weakest.map(|weakest| weakest.kind);
+    // A depth that is off by as much as the focal length is so in every photo.
+    if let Some(kind) = weakest.filter(|kind| !(is_by_tolerances && *kind == Weakness::Depth)) {
+        note(ui, view_that_helps(kind), false);
+    }
+    let is_guess =
+        sureness.guessed_focal.is_some_and(|sigma| sigma > tolerances.focal.max(tolerances.mesh_scale));
+    match sureness.helpful_pin {
+        _ if is_by_tolerances && is_guess => {
+            note(
+                ui,
+                "Most of the depth's comes from the estimated focal length: a calibrated camera helps most.",
+                false,
+            );
+        }
+        _ if is_by_tolerances => {
+            note(
+                ui,
+                "Most of the depth's comes from these tolerances: a calibrated camera and a measured mesh help.",
+                false,
+            );
+        }
+        Some(pin) => note(ui, &pin_that_helps(&pin, &sureness.uncertainty), false),
+        None => {}
+    }
 }
 
 /// Two lines: where it is, how it is turned; one standard deviation.
